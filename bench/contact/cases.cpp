@@ -134,7 +134,7 @@ class Rows {
     for (const double tolerance : {1e-4, 1e-8}) {
       ContactOptions options = options_for(tolerance);
       for (const auto coupling : {ContactCoupling::iterated, ContactCoupling::condensed}) {
-        options.coupling = coupling;
+        options.expert.coupling = coupling;
         for (const auto visit : {ContactVisit::first, ContactVisit::kept}) {
           add({.kind = ContactKind::coupling, .input = input, .options = options, .visit = visit});
         }
@@ -146,7 +146,7 @@ class Rows {
     ContactOptions options = options_for(1e-6);
     options.method = choice.method;
     add({.kind = ContactKind::skip, .input = choice.input, .options = options});
-    options.skip.*choice.choice = false;
+    options.expert.skip.*choice.choice = false;
     add({.kind = ContactKind::skip,
          .input = choice.input,
          .options = options,
@@ -228,8 +228,8 @@ std::string name_of(const ContactCase& row) {
                                  word_of(options.precision), place, options.tolerance);
   if (row.visit != ContactVisit::first) name += fmt::format("/visit:{}", word_of(row.visit));
   if (!row.without.empty()) name += "/without:" + row.without;
-  if (options.coupling != ContactCoupling::automatic) {
-    name += fmt::format("/coupling:{}", tetwarp::name_of(options.coupling));
+  if (options.expert.coupling != ContactCoupling::automatic) {
+    name += fmt::format("/coupling:{}", tetwarp::name_of(options.expert.coupling));
   }
   return name;
 }

@@ -161,7 +161,7 @@ void run_skip(benchmark::State& state, const TouchCase& of, bool SimulateSkipOpt
   scene.solver.linear_tolerance = 1e-10;
   SimulateOptions all;
   all.threads = 1;
-  all.skip.*what = false;
+  all.expert.skip.*what = false;
   Simulator skips(scene, {.threads = 1}), does_all(scene, all);
   const Timing timings[] = {timing_of(records_of(skips, of)), timing_of(records_of(does_all, of))};
   const double difference = farthest_apart(skips, does_all) / *scene.thickness;

@@ -32,7 +32,7 @@ class TwoBuffers {
                 {.output_grid = scene_.output_grid,
                  .backend = row.backend,
                  .threads = row.threads,
-                 .skip = {.unchanged_tets = false}}) {
+                 .expert = {.skip = {.unchanged_tets = false}}}) {
     for (std::size_t b = 0; b < 2; ++b) {
       buffers_[b] = Buffer(bytes_);
       pointers_[b] = buffers_[b].data();

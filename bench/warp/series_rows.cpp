@@ -31,7 +31,7 @@ class Swing {
                 {.output_grid = scene_.output_grid,
                  .backend = row.backend,
                  .threads = row.threads,
-                 .skip = {.unchanged_tets = is_update}}) {}
+                 .expert = {.skip = {.unchanged_tets = is_update}}}) {}
 
   /// Steps to the other pose.
   void step(std::int32_t* owner = nullptr) {

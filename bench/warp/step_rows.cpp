@@ -29,7 +29,7 @@ struct Subject {
                               .backend = row.backend,
                               .threads = row.threads,
                               .stage_times = true,
-                              .skip = row.skip};
+                              .expert = {.skip = row.skip}};
     construct = seconds_of([&] { job.emplace(scene, source, options); });
     first_step = seconds_of([&] { job->step(); });
   }

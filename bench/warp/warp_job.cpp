@@ -10,7 +10,7 @@ namespace tetwarp::bench {
 namespace {
 WarpOptions repeated(WarpOptions options, const scenes::Scene& scene) {
   options.output_grid = scene.output_grid;
-  options.skip.unchanged_tets = false;
+  options.expert.skip.unchanged_tets = false;
   return options;
 }
 }  // namespace

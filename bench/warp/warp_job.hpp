@@ -39,7 +39,8 @@ AffineRows floor_map(const Workload& workload);
 /// A Warper and the memory of its output.
 class WarpJob {
  public:
-  /// @param options  the output grid is set to the scene's; skip.unchanged_tets is turned off, so
+  /// @param options  the output grid is set to the scene's; expert.skip.unchanged_tets is turned
+  /// off, so
   ///                 that every step with the same positions does all the work
   WarpJob(const scenes::Scene& scene,
           const VolumeView& source,

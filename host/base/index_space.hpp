@@ -2,6 +2,8 @@
 /// Maps between the world and the index spaces of grids.
 #pragma once
 #include <array>
+#include <cmath>
+#include <cstddef>
 
 #include <tetwarp/volume.hpp>
 
@@ -12,6 +14,12 @@ namespace tetwarp {
 /// The map from world to index positions: inverse of direction * diag(spacing), and the origin. The
 /// inverse of a diagonal matrix consists of the rounded reciprocals. @pre check_grid() has passed
 TETWARP_EXPORT IndexFromWorld index_from_world(const Grid& grid);
+
+/// Length of one step along a grid axis [world].
+inline double step_length(const Grid& grid, std::size_t axis) {
+  const auto& d = grid.direction;
+  return grid.spacing[axis] * std::hypot(d[axis], d[3 + axis], d[6 + axis]);
+}
 
 /// Index positions of the same world position in two grids: x_source = linear * x_output + offset.
 struct IndexMap {

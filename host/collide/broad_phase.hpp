@@ -106,7 +106,7 @@ class BroadPhase {
   ItemBoxes<Exec> item_boxes_;
   GridPlan host_plan_{};
   typename Exec::template Vector<GridPlan> plan_;
-  List<CellPair> entries_;  ///< items in cells of the grids
+  List<KeyValue> entries_;  ///< items in cells of the grids
   List<ItemPair> pairs_;
 };
 

@@ -43,8 +43,8 @@ class SunkHits {
   SinkOwners owners_;
   std::int64_t owner_count_;
   int key_bits_ = 1;  ///< of the number of an owner
-  typename Exec::template List<CellPair> sinks_, first_;
-  typename Exec::template Vector<CellPair> ways_;
+  typename Exec::template List<KeyValue> sinks_, first_;
+  typename Exec::template Vector<KeyValue> ways_;
 };
 
 }  // namespace tetwarp

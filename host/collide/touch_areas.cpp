@@ -6,17 +6,9 @@
 #include <limits>
 
 #include "host/base/point3.hpp"
+#include "host/base/vector_view.hpp"
 
 namespace tetwarp {
-namespace {
-
-template <class T>
-View<const T> view_of(const std::vector<T>& values) {
-  return {values.data(), static_cast<std::int64_t>(values.size())};
-}
-
-}  // namespace
-
 TouchAreas::TouchAreas(const CollisionSurfaces& surfaces)
     : start(surfaces.vertex_body.size() + 1), surfaces_(surfaces) {
   for (const auto& corners : surfaces.triangles) {

@@ -75,8 +75,8 @@ class TouchChoice {
   Exec& exec_;
   std::int64_t vertex_count_;
   int key_bits_ = 1;          ///< of the number of a feature
-  List<CellPair> order_;      ///< feature, number of a touch; sorted by feature
-  Vector<CellPair> ordered_;  ///< the same, of each vertex by body and distance
+  List<KeyValue> order_;      ///< feature, number of a touch; sorted by feature
+  Vector<KeyValue> ordered_;  ///< the same, of each vertex by body and distance
   Vector<std::int8_t> mark_;
   List<ChosenTouch> chosen_;
   std::vector<ChosenTouch> host_chosen_;

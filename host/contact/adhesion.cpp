@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/vector_view.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
-#include "host/contact/problem/vectors.hpp"
 #include "host/contact/solver_state.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_adhesion.hpp"

@@ -31,10 +31,10 @@ void check_options(const ContactOptions& options) {
     fail("tolerance: expected a finite number above 0");
   }
   if (options.max_sweeps < 1) fail("max_sweeps: expected 1 or more");
-  if (!(options.relaxation > 0 && options.relaxation < 2)) {
+  if (!(options.expert.relaxation > 0 && options.expert.relaxation < 2)) {
     fail("relaxation: expected a number above 0 and below 2");
   }
-  if (options.inner_sweeps < 1) fail("inner_sweeps: expected 1 or more");
+  if (options.expert.inner_sweeps < 1) fail("inner_sweeps: expected 1 or more");
   if (!(options.recovery_speed >= 0)) fail("recovery_speed: expected 0 or more");
   if (!(options.max_seconds > 0)) fail("max_seconds: expected a number above 0");
   if (options.max_newton < 0) fail("max_newton: expected 0 or more");

@@ -7,11 +7,11 @@
 #include <tetwarp/contact_analysis.hpp>
 #include <vector>
 
+#include "host/base/vector_view.hpp"
 #include "host/contact/problem/matrix.hpp"
 #include "host/contact/problem/measure.hpp"
 #include "host/contact/problem/spring_offset.hpp"
 #include "host/contact/problem/system_factor.hpp"
-#include "host/contact/problem/vectors.hpp"
 
 namespace tetwarp {
 namespace {

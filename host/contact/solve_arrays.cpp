@@ -7,8 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/fill_report.hpp"
-#include "host/contact/problem/vectors.hpp"
 #include "host/contact/solver_state.hpp"
 #include "host/contact/structure/extract.hpp"
 
@@ -132,7 +133,7 @@ void complete(const ContactStructure& structure, EngineResult& result) {
 
 void ContactSolver::set_structure(const ContactProblem& problem) {
   if (!problem.second_friction.empty() || !problem.bilateral.empty() || !problem.rolling.empty() ||
-      !problem.row_blocks.empty()) {
+      !problem.expert.row_blocks.empty()) {
     throw std::invalid_argument(
         "set_structure: the problem has second_friction, bilateral rows or rolling friction; solve "
         "such problems by solve(ContactProblem)");

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "host/base/index_space.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/lattice_search.hpp"
 #include "host/scene/volume_rows.hpp"
@@ -18,12 +19,6 @@ namespace {
 /// Shorter edges of cells are small. The number of voxels' centres in a tetrahedron of larger ones
 /// differs from its volume by a fifth at most.
 constexpr double least_edge = 16;  // [voxel]
-
-/// Length of one step along a grid axis [world].
-double step_length(const Grid& grid, std::size_t axis) {
-  const auto& d = grid.direction;
-  return grid.spacing[axis] * std::hypot(d[axis], d[3 + axis], d[6 + axis]);
-}
 
 /// 1 per voxel of the foreground, of a region of the image.
 std::vector<std::uint8_t> foreground_of(const ImageGeometry& image, const Region& region) {

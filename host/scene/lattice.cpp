@@ -1,5 +1,5 @@
 /// @file lattice.cpp
-/// Frames, nodes and tetrahedra of lattices.
+/// Lattices of tetrahedra, and what is left of them.
 #include "host/scene/lattice.hpp"
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "host/base/five_tets.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 
 namespace tetwarp {
@@ -20,19 +19,6 @@ LatticeFrame fitted_frame(const Bounds& bounds, const std::array<std::int64_t, 3
   return frame;
 }
 
-LatticeFrame covering_frame(const Bounds& bounds, const Point3& edge, double offset) {
-  LatticeFrame frame{{1, 1, 1}, {}, edge};
-  for (std::size_t d = 0; d < 3; ++d) {
-    const double extent = bounds.high[d] - bounds.low[d];
-    // Lengths within rounding of a whole number of edges need no further box.
-    const double count = std::max(1.0, std::ceil(extent / edge[d] - 1e-9) + (offset > 0 ? 1 : 0));
-    frame.cells[d] = static_cast<std::int64_t>(count);
-    const double middle = bounds.low[d] + 0.5 * extent;
-    frame.start[d] = middle - (0.5 * count - (offset > 0 ? 0.5 - offset : 0)) * edge[d];
-  }
-  return frame;
-}
-
 void check_cells(const std::string& place, const std::array<double, 3>& cells) {
   const double count = 5 * cells[0] * cells[1] * cells[2];
   if (!(count < std::numeric_limits<std::int32_t>::max())) {
@@ -41,35 +27,8 @@ void check_cells(const std::string& place, const std::array<double, 3>& cells) {
 }
 
 TetMesh make_lattice(const LatticeFrame& frame) {
-  const auto& cells = frame.cells;
-  TetMesh mesh;
-  mesh.nodes.reserve(static_cast<std::size_t>((cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1)));
-  for (std::int64_t c = 0; c <= cells[2]; ++c) {
-    for (std::int64_t b = 0; b <= cells[1]; ++b) {
-      for (std::int64_t a = 0; a <= cells[0]; ++a) {
-        mesh.nodes.push_back({frame.start[0] + frame.edge[0] * static_cast<double>(a),
-                              frame.start[1] + frame.edge[1] * static_cast<double>(b),
-                              frame.start[2] + frame.edge[2] * static_cast<double>(c)});
-      }
-    }
-  }
-  const auto node_of = [&](std::int64_t a, std::int64_t b, std::int64_t c, int corner) {
-    return static_cast<std::int32_t>(
-        ((c + (corner >> 2)) * (cells[1] + 1) + b + (corner >> 1 & 1)) * (cells[0] + 1) + a +
-        (corner & 1));
-  };
-  mesh.tets.reserve(static_cast<std::size_t>(5 * cells[0] * cells[1] * cells[2]));
-  for (std::int64_t c = 0; c < cells[2]; ++c) {
-    for (std::int64_t b = 0; b < cells[1]; ++b) {
-      for (std::int64_t a = 0; a < cells[0]; ++a) {
-        for (const auto& corners : tets_of_cell[(a + b + c) % 2]) {
-          auto& tet = mesh.tets.emplace_back();
-          for (std::size_t n = 0; n < 4; ++n) tet[n] = node_of(a, b, c, corners[n]);
-        }
-      }
-    }
-  }
-  return mesh;
+  Mesh mesh = mesh_of_cells(frame, {}, LatticeDivision::five_tets);
+  return {std::move(mesh.rest_positions), std::move(mesh.tets)};
 }
 
 std::vector<std::int32_t> keep_tets(TetMesh& mesh, const std::vector<std::uint8_t>& is_kept) {

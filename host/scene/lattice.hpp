@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/base/point3.hpp"
+#include "host/base/lattice_cells.hpp"
 
 namespace tetwarp {
 
@@ -17,19 +17,8 @@ struct TetMesh {
   std::vector<std::array<std::int32_t, 4>> tets;
 };
 
-/// Boxes along the axes of some frame: node (a, b, c) is at start + edge * (a, b, c).
-struct LatticeFrame {
-  std::array<std::int64_t, 3> cells{1, 1, 1};
-  Point3 start{0, 0, 0};
-  Point3 edge{1, 1, 1};
-};
-
 /// Boxes that fill `bounds` exactly.
 LatticeFrame fitted_frame(const Bounds& bounds, const std::array<std::int64_t, 3>& cells);
-
-/// Boxes of the given edges that cover `bounds`, with the middle of the lattice at the middle of
-/// the bounds, moved by `offset` edges and then with one box more along each axis if needed.
-LatticeFrame covering_frame(const Bounds& bounds, const Point3& edge, double offset);
 
 /// @param place  of the choice of boxes, for messages
 /// @throws std::invalid_argument  the tetrahedra are 2^31 or more

@@ -11,10 +11,10 @@
 namespace tetwarp {
 
 using Quaternion = std::array<double, 4>;
-using Matrix3 = std::array<double, 9>;  ///< row major
+using RotationMatrix = std::array<double, 9>;  ///< row major
 
 /// The rotation matrix of a quaternion of any length but 0.
-inline Matrix3 rotation_of(const Quaternion& q) {
+inline RotationMatrix rotation_of(const Quaternion& q) {
   const auto [w, x, y, z] = q;
   const double s = 2 / (w * w + x * x + y * y + z * z);
   return {1 - s * (y * y + z * z), s * (x * y - w * z),     s * (x * z + w * y),
@@ -22,7 +22,7 @@ inline Matrix3 rotation_of(const Quaternion& q) {
           s * (x * z - w * y),     s * (y * z + w * x),     1 - s * (x * x + y * y)};
 }
 
-inline Point3 times(const Matrix3& m, const Point3& x) {
+inline Point3 times(const RotationMatrix& m, const Point3& x) {
   return {m[0] * x[0] + m[1] * x[1] + m[2] * x[2], m[3] * x[0] + m[4] * x[1] + m[5] * x[2],
           m[6] * x[0] + m[7] * x[1] + m[8] * x[2]};
 }

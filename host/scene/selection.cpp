@@ -23,7 +23,7 @@ class Marks {
     const BodyGeometry& geometry = parts.geometry;
     takes_nodes_ = !geometry.nodes.empty() && from == Selectable::nodes;
     const std::vector<Point3>& points = takes_nodes_ ? geometry.nodes : geometry.surface.points;
-    const Matrix3 rotation = rotation_of(body.pose.rotation);
+    const RotationMatrix rotation = rotation_of(body.pose.rotation);
     positions_.reserve(points.size());
     for (const Point3& x : points) {
       positions_.push_back(plus(body.pose.position, times(rotation, x)));

@@ -48,7 +48,7 @@ enum class AdhesionRule {
 /// How islands of contacts are solved whose bodies A couples, as it couples the nodes of an elastic
 /// body. `automatic` is the one to use; the others are for experts.
 ///
-/// Iterated, with D the diagonal blocks of A and omega = ContactOptions::relaxation:
+/// Iterated, with D the diagonal blocks of A and omega = ContactExpertOptions::relaxation:
 ///
 ///     v_f = v - omega D^-1 (A v - b),  sweeps in omega J D^-1 J^T,  v = v_f + omega D^-1 J^T r
 ///
@@ -86,6 +86,15 @@ struct ContactSkipOptions {
                                    ///< successive problems whose A and J have the same bits
 };
 
+/// Choices for comparing methods. The defaults suit all problems; the solution is the same within
+/// the tolerance.
+struct ContactExpertOptions {
+  ContactCoupling coupling = ContactCoupling::automatic;
+  double relaxation = 0.5;  ///< omega of the outer block-Jacobi iteration, in (0, 2)
+  int inner_sweeps = 5;     ///< sweeps per outer iteration, >= 1
+  ContactSkipOptions skip = {};
+};
+
 /// How far a running solve is.
 struct ContactProgress {
   double seconds = 0;                  ///< since its start
@@ -93,18 +102,14 @@ struct ContactProgress {
   std::int64_t newton_iterations = 0;  ///< linear systems solved
 };
 
-/// Options of a solve. The defaults suit most problems; the members marked "expert" exist for
-/// comparing methods.
+/// Options of a solve. The defaults suit most problems.
 struct ContactOptions {
   FrictionLaw law = FrictionLaw::cone;
   AdhesionRule rule = AdhesionRule::parallel;
-  ContactMethod method = ContactMethod::automatic;  ///< others than `automatic`: expert
+  ContactMethod method = ContactMethod::automatic;  ///< others are for comparisons
   ContactMeasure measure = ContactMeasure::eta;     ///< what `tolerance` bounds
   double tolerance = 1e-6;                          ///< of `measure`, relative, > 0
   std::int64_t max_sweeps = 20000;  ///< passes over all contacts of an island, of all methods, >= 1
-  ContactCoupling coupling = ContactCoupling::automatic;  ///< others than `automatic`: expert
-  double relaxation = 0.5;  ///< omega of the outer block-Jacobi iteration, in (0, 2); expert
-  int inner_sweeps = 5;     ///< sweeps per outer iteration, >= 1; expert
   double recovery_speed = std::numeric_limits<double>::infinity();  ///< existing penetration is
                                                                     ///< undone at most this fast
                                                                     ///< [m/s], >= 0
@@ -112,7 +117,7 @@ struct ContactOptions {
   Backend backend = Backend::automatic;  ///< see choose_contact_backend()
   int device = 0;                        ///< CUDA device number
   int threads = 0;  ///< of the cpu back end, to 1024, 0: all cores; any number: same bits
-  ContactSkipOptions skip = {};
+  ContactExpertOptions expert = {};
 
   // Limits of a solve, which then returns the best iterate so far, with status `not_converged` and
   // the limit in status_reason. Results depend on the clock only if max_seconds is set. Not

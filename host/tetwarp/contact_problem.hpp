@@ -81,13 +81,18 @@ struct RollingFriction {
 };
 
 /// How the solver itself stores BilateralRows and RollingFriction: as blocks of three rows among
-/// the contacts. Empty in problems of a caller.
+/// the contacts.
 struct RowBlocks {
   std::vector<std::uint8_t> kind;     ///< [contacts], a ContactKind of the kernels
   std::vector<std::int32_t> contact;  ///< [contacts], of rolling friction: whose it is
   std::vector<double> torsion;        ///< [contacts], m
 
   bool empty() const { return kind.empty(); }
+};
+
+/// What the solver itself adds to a problem; empty in problems of a caller.
+struct ContactProblemExpert {
+  RowBlocks row_blocks;
 };
 
 /// Contacts of one step in one of two forms; the members of the other form stay empty:
@@ -119,7 +124,7 @@ struct ContactProblem {
                                         ///< is an ellipse. Empty: the same
   BilateralRows bilateral;
   RollingFriction rolling;
-  RowBlocks row_blocks;  ///< of the solver; leave empty
+  ContactProblemExpert expert;  ///< of the solver; leave empty
 
   bool is_local() const { return !delassus.empty(); }
   std::int64_t contact_count() const { return static_cast<std::int64_t>(friction.size()); }

@@ -34,6 +34,11 @@ struct SimulateSkipOptions {
                            ///< touch nothing: whatever meets one meets another feature as soon
 };
 
+/// Choices for comparing methods, and for finding faults.
+struct SimulateExpertOptions {
+  SimulateSkipOptions skip = {};
+};
+
 /// How far a running step is.
 struct StepProgress {
   std::int64_t step = 0;               ///< from 0
@@ -48,7 +53,7 @@ struct SimulateOptions {
   bool float32_solve = false;  ///< conjugate gradients on a float32 copy of the system, refined
                                ///< in float64 to the same tolerance
   std::int64_t max_iterations = 10000;  ///< of conjugate gradients per solve
-  SimulateSkipOptions skip = {};
+  SimulateExpertOptions expert = {};
   bool untangle =
       false;  ///< elastic bodies and cloth that intersect others at the start are shrunk until
               ///< they are apart and grow back within 0.2 s; otherwise they are an error

@@ -66,10 +66,15 @@ struct SkipOptions {
              ///< tests for its border, cells within one tetrahedron without any
   bool background_chunks = true;  ///< the command does not store chunks of files that hold only
                                   ///< background
-  /// Expert: rejects and accepts cells as Gascon et al. do, by bit masks of the eight grid points
+  /// Rejects and accepts cells as Gascon et al. do, by bit masks of the eight grid points
   /// around each cell, instead of two of them per face, which decide the same. For comparing the
   /// methods; back ends cpu and cuda.
   bool grid_point_masks = false;
+};
+
+/// Choices for comparing methods, and for finding faults.
+struct WarpExpertOptions {
+  SkipOptions skip = {};
 };
 
 /// The part of the sources' grid that is in memory, for sources that do not fit as a whole. The
@@ -106,7 +111,7 @@ struct WarpOptions {
   /// two records of events; otherwise only `total` is measured there. Other back ends measure
   /// always.
   bool stage_times = false;
-  SkipOptions skip = {};
+  WarpExpertOptions expert = {};
 };
 
 /// Called from within step() or begin_step(), several times per step, with the finished fraction of

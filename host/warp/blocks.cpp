@@ -230,7 +230,7 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
                         (output_share + limits.scratch_voxel) * output_voxels +
                         source_share * source_voxels;
   const double mask_bytes =
-      options.skip.grid_point_masks ? most_corners(1) * sizeof(std::uint16_t) : 0.0;
+      options.expert.skip.grid_point_masks ? most_corners(1) * sizeof(std::uint16_t) : 0.0;
   double pairs = 0;
   for (const std::int32_t t : cells) {
     pairs += static_cast<double>(pairs_of(footprints[static_cast<std::size_t>(t)], box));
@@ -244,7 +244,7 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
   const double cell_count = output_voxels / (cell_edge * cell_edge * cell_edge);
   const double room = list_room * pairs + least_room;
   block.device_bytes = samples + around + (device_pair_bytes + mask_bytes) * room +
-                       (options.skip.interior_cells ? class_list_bytes(cell_count) : 0.0);
+                       (options.expert.skip.interior_cells ? class_list_bytes(cell_count) : 0.0);
   return block;
 }
 

@@ -109,7 +109,7 @@ class PairState {
   bool keeps_totals() const { return options_.intensity == Intensity::conservative; }
   /// Whether pairs are culled by masks of grid points.
   bool uses_masks(const CullSwitches& switches) const {
-    return options_.skip.grid_point_masks && (switches.reject || switches.accept);
+    return options_.expert.skip.grid_point_masks && (switches.reject || switches.accept);
   }
   /// Whether a step in which so many tetrahedra move is computed faster from scratch.
   bool is_most(std::int64_t moved) const { return moved > tet_count() - tet_count() / 8; }

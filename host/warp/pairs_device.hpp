@@ -26,7 +26,7 @@ class DevicePairs : public PairState<Exec> {
     reserve(cell_sums_, cells);
     cell_counts_.reserve(cells);
     for (List& list : lists_) list.ranges.reserve(cells + 1);
-    if (!options_.skip.unchanged_tets) return;
+    if (!options_.expert.skip.unchanged_tets) return;
     node_moved_.reserve(mesh_.node_count());
     moved_.reserve(tets);
     staying_.reserve(cells);
@@ -66,7 +66,7 @@ class DevicePairs : public PairState<Exec> {
   /// Records that the step is complete, so that the next one may be an update of it.
   void finish(const StepCounters& counters) {
     moved_count_ = counters.work.moved;
-    has_before_ = options_.skip.unchanged_tets;
+    has_before_ = options_.expert.skip.unchanged_tets;
   }
 
  private:
@@ -137,8 +137,8 @@ class DevicePairs : public PairState<Exec> {
     const std::int64_t cells = this->cell_count();
     List& now = lists_[now_];
     now.size = pair_capacity_;
-    const CullSwitches switches{options_.skip.rejected_cells && !this->keeps_totals(),
-                                options_.skip.accepted_cells && !this->keeps_totals()};
+    const CullSwitches switches{options_.expert.skip.rejected_cells && !this->keeps_totals(),
+                                options_.expert.skip.accepted_cells && !this->keeps_totals()};
     SpreadCounts& spread = this->counters()->spread;
     const auto spread_over = [](std::int64_t* places) {
       return SpreadCounter{places, SpreadCounts::places};
@@ -176,7 +176,7 @@ class DevicePairs : public PairState<Exec> {
     candidates_.reserve(size);
     places_.reserve(size);
     placed_.reserve(size);
-    if (options_.skip.grid_point_masks) masks_.reserve(this->tet_count(), size);
+    if (options_.expert.skip.grid_point_masks) masks_.reserve(this->tet_count(), size);
     for (List& list : lists_) list.pairs.reserve(size);
     pair_capacity_ = size;
   }

@@ -46,7 +46,7 @@ class HostPairs : public PairState<Exec> {
   void finish(const StepCounters& counters) {
     pairs_before_ = is_update_ ? counters.work.merged_pairs : counters.work.pairs;
     moved_count_ = counters.work.moved;
-    has_before_ = options_.skip.unchanged_tets;
+    has_before_ = options_.expert.skip.unchanged_tets;
   }
 
  private:
@@ -110,8 +110,8 @@ class HostPairs : public PairState<Exec> {
   void cull(List& list) {
     const std::int64_t tets = this->tet_count();
     const View<const std::int64_t> pair_offsets = pair_offsets_.const_view(tets + 1);
-    const CullSwitches switches{options_.skip.rejected_cells && !this->keeps_totals(),
-                                options_.skip.accepted_cells};
+    const CullSwitches switches{options_.expert.skip.rejected_cells && !this->keeps_totals(),
+                                options_.expert.skip.accepted_cells};
     candidates_.reserve(pair_total_);
     const auto cull_by = [&](const auto& verdict) {
       cell_cull(exec_, this->setups(), verdict, pair_offsets, switches, geometry_.frame,

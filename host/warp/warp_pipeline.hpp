@@ -203,7 +203,7 @@ class WarpPipeline : public WarpBackend {
       job.filter = plan_.options.filter;
       job.outside = geometry_.outside;
       job.background = rounded_to<T>(plan_.options.background);
-      job.copy_whole_shifts = plan_.options.skip.copied_voxels;
+      job.copy_whole_shifts = plan_.options.expert.skip.copied_voxels;
       job.volume = static_cast<T*>(volume);
       // Mask, owners and counts are the same for all sources.
       job.mask = s == 0 ? extra.mask : nullptr;
@@ -219,7 +219,7 @@ class WarpPipeline : public WarpBackend {
         cell_work(exec_, work);
         overlap(s, work.job, part);
       } else {
-        cell_raster_.run(exec_, work, plan_.options.skip.interior_cells,
+        cell_raster_.run(exec_, work, plan_.options.expert.skip.interior_cells,
                          s == 0 ? &pairs_.counters()->lists : nullptr, part);
       }
       if (totals_.are_requested()) {
@@ -253,7 +253,7 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   CellWorkBody<T> work_of_cells(std::size_t s, const RasterJob<T>& job) {
     CellWorkBody<T> body = {job, {}, stale_, {}, {}};
-    if (plan_.options.skip.constant_cells && job.transforms.size == 0) {
+    if (plan_.options.expert.skip.constant_cells && job.transforms.size == 0) {
       body.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
     }
     if (stale_.size == 0 && body.uniform.reach.size == 0) return body;

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/pixel_dispatch.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
 namespace tetwarp {
@@ -82,33 +83,6 @@ void swap_samples(std::size_t size, std::byte* samples, std::size_t count) {
   if (size == 8) swap_each<8>(samples, count);
 }
 
-/// Calls `body` with a value of the C++ type of `type`.
-template <class Body>
-void with_type(PixelType type, const Body& body) {
-  switch (type) {
-    case PixelType::uint8:
-      return body(std::uint8_t{});
-    case PixelType::int8:
-      return body(std::int8_t{});
-    case PixelType::uint16:
-      return body(std::uint16_t{});
-    case PixelType::int16:
-      return body(std::int16_t{});
-    case PixelType::uint32:
-      return body(std::uint32_t{});
-    case PixelType::int32:
-      return body(std::int32_t{});
-    case PixelType::uint64:
-      return body(std::uint64_t{});
-    case PixelType::int64:
-      return body(std::int64_t{});
-    case PixelType::float32:
-      return body(float{});
-    case PixelType::float64:
-      return body(double{});
-  }
-}
-
 /// Stores slope * sample + intercept, or its negative, in every `stride`-th value.
 /// @returns false when finite samples become infinite
 template <class Value>
@@ -119,7 +93,7 @@ bool scale(const NiftiHeader& header,
            std::byte* out,
            std::size_t stride) {
   bool all_fit = true;
-  with_type(header.type, [&]<class T>(T) {
+  with_pixel_type(header.type, [&]<class T>(T) {
     for (std::size_t v = 0; v < count; ++v) {
       T sample;
       std::memcpy(&sample, samples + v * sizeof sample, sizeof sample);

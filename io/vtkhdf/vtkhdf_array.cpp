@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
+#include "host/base/pixel_dispatch.hpp"
 #include "io/h5/h5_write.hpp"
 #include "io/nifti/nifti_facts.hpp"
 
@@ -80,29 +82,15 @@ std::array<std::int64_t, 3> brick_chunk(const std::array<std::int64_t, 3>& dims,
 }
 
 std::vector<std::byte> sample_bytes(PixelType type, double value) {
-  switch (type) {
-    case PixelType::uint8:
-      return integer_bytes<std::uint8_t>(value);
-    case PixelType::int8:
-      return integer_bytes<std::int8_t>(value);
-    case PixelType::uint16:
-      return integer_bytes<std::uint16_t>(value);
-    case PixelType::int16:
-      return integer_bytes<std::int16_t>(value);
-    case PixelType::uint32:
-      return integer_bytes<std::uint32_t>(value);
-    case PixelType::int32:
-      return integer_bytes<std::int32_t>(value);
-    case PixelType::uint64:
-      return integer_bytes<std::uint64_t>(value);
-    case PixelType::int64:
-      return integer_bytes<std::int64_t>(value);
-    case PixelType::float32:
-      return bytes_of(static_cast<float>(value));
-    case PixelType::float64:
-      return bytes_of(value);
-  }
-  return {};
+  std::vector<std::byte> bytes;
+  with_pixel_type(type, [&]<class T>(T) {
+    if constexpr (std::is_integral_v<T>) {
+      bytes = integer_bytes<T>(value);
+    } else {
+      bytes = bytes_of(static_cast<T>(value));
+    }
+  });
+  return bytes;
 }
 
 ArrayWriter::ArrayWriter(const VtkhdfOutput& output,

@@ -3,29 +3,28 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/base/hd.hpp"
+#include "kernels/base/key_value.hpp"
 
 namespace tetwarp {
 
-/// cell << 32, then accepted << 31, then the tetrahedron. Sorting by the upper half alone, stably,
-/// gives the order cell, then tetrahedron.
-using CellPair = std::uint64_t;
+/// The key is the cell, the value the tetrahedron. The flag is set where the pair is accepted:
+/// every voxel of the cell is inside.
+using CellPair = KeyValue;
 
-constexpr CellPair rejected_pair = ~CellPair{0};
-constexpr std::uint32_t accepted_bit = 0x80000000u;  ///< every voxel of the cell is inside
+constexpr CellPair rejected_pair = no_key_value;
+constexpr std::uint32_t accepted_bit = flag_bit;
 
 TETWARP_HD CellPair make_pair(std::int64_t cell, std::int64_t tet, bool accepted) {
-  return static_cast<CellPair>(cell) << 32 | (accepted ? accepted_bit : 0u) |
-         static_cast<CellPair>(tet);
+  return make_key_value(cell, tet, accepted);
 }
 TETWARP_HD std::int64_t cell_of(CellPair pair) {
-  return static_cast<std::int64_t>(pair >> 32);
+  return key_of(pair);
 }
 TETWARP_HD int tet_of(CellPair pair) {
-  return static_cast<int>(static_cast<std::uint32_t>(pair) & ~accepted_bit);
+  return value_of(pair);
 }
 TETWARP_HD bool is_accepted(CellPair pair) {
-  return (pair & accepted_bit) != 0;
+  return flag_of(pair);
 }
 
 }  // namespace tetwarp

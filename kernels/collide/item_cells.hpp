@@ -7,7 +7,7 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/base/cell_pair.hpp"
+#include "kernels/base/key_value.hpp"
 #include "kernels/collide/item_box.hpp"
 
 namespace tetwarp {
@@ -41,11 +41,9 @@ struct GridPlan {
   }
 };
 
-/// An entry is cell << 32 | (1 if the item is smaller than those of the grid, else 0) << 31 | item.
-/// It has the layout of CellPair, whose sort is used.
-constexpr std::uint32_t smaller_bit = accepted_bit;
-
-/// One index = one item. Appends its entries, those of its own grid first.
+/// One index = one item. Appends its entries, those of its own grid first. The key of an entry is
+/// the cell, its value the item, and its flag is set where the item is smaller than those of the
+/// grid.
 struct ItemCellsBody {
   const GridPlan* plan;
   View<const Box> boxes;
@@ -66,7 +64,7 @@ struct ItemCellsBody {
       for (std::int64_t z = low[2]; z <= high[2]; ++z) {
         for (std::int64_t y = low[1]; y <= high[1]; ++y) {
           for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-            emit(make_pair(plan->key_of(level, x, y, z), i, l > own));
+            emit(make_key_value(plan->key_of(level, x, y, z), i, l > own));
           }
         }
       }

@@ -39,30 +39,19 @@ struct PairGapBody {
   }
 
   TETWARP_HD PairGap gap_of(const FeaturePair& pair) const {
-    return {pair, axis_distance(pair) - radius_of(scene, pair)};
+    return {pair, height_or_distance(pair) - radius_of(scene, pair)};
   }
 
  private:
   /// Distance of the features without their radii.
-  TETWARP_HD double axis_distance(const FeaturePair& pair) const {
+  TETWARP_HD double height_or_distance(const FeaturePair& pair) const {
     const PairVertices own = vertices_of(scene, pair);
     const double* x[4] = {};
     for (int k = 0; k < own.count; ++k) {
       x[k] = motion.start.data + 3 * std::int64_t{own.vertex[k]};
     }
-    double weight[3], s = 0, t = 0;
-    switch (pair.kind) {
-      case PairKind::vertex_face:
-        return vertex_face_distance(x[0], x[1], x[2], x[3], weight);
-      case PairKind::edge_edge:
-        return edge_edge_distance(x[0], x[1], x[2], x[3], &s, &t);
-      case PairKind::vertex_edge:
-        return edge_edge_distance(x[0], x[0], x[1], x[2], &s, &t);
-      case PairKind::vertex_vertex:
-        return edge_edge_distance(x[0], x[0], x[1], x[1], &s, &t);
-      default:
-        break;
-    }
+    double weight[4];
+    if (pair.kind != PairKind::vertex_plane) return axis_distance(pair.kind, x, weight);
     const double* const plane = motion.plane_start.data + 6 * std::int64_t{pair.b};
     double height = 0;
     for (int k = 0; k < 3; ++k) height += plane[3 + k] * (x[0][k] - plane[k]);

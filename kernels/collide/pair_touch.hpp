@@ -48,18 +48,42 @@ TETWARP_HD void bodies_of(const CollideView& scene, const FeaturePair& pair, std
                                       : scene.plane_body[pair.b];
 }
 
+/// The radius of a, and that of b; of faces and planes 0.
+TETWARP_HD void radii_of(const CollideView& scene, const FeaturePair& pair, double* radii) {
+  const bool is_edge_a = pair.kind == PairKind::edge_edge;
+  radii[0] = is_edge_a ? scene.edge_radius[pair.a] : scene.vertex_radius[pair.a];
+  radii[1] = is_edge_a || pair.kind == PairKind::vertex_edge ? scene.edge_radius[pair.b]
+             : pair.kind == PairKind::vertex_vertex          ? scene.vertex_radius[pair.b]
+                                                             : 0;
+}
 /// Sum of the radii of both features.
 TETWARP_HD double radius_of(const CollideView& scene, const FeaturePair& pair) {
-  switch (pair.kind) {
-    case PairKind::edge_edge:
-      return scene.edge_radius[pair.a] + scene.edge_radius[pair.b];
-    case PairKind::vertex_edge:
-      return scene.vertex_radius[pair.a] + scene.edge_radius[pair.b];
-    case PairKind::vertex_vertex:
-      return scene.vertex_radius[pair.a] + scene.vertex_radius[pair.b];
-    default:
-      return scene.vertex_radius[pair.a];
+  double radii[2];
+  radii_of(scene, pair, radii);
+  return radii[0] + radii[1];
+}
+
+/// The nearest points of the features of a pair, without their radii.
+/// @param kind    not vertex_plane
+/// @param x       places of vertices_of()
+/// @param weight  out: of these vertices in the point of their side, [4]
+/// @returns their distance
+TETWARP_HD double axis_distance(PairKind kind, const double* const* x, double* weight) {
+  weight[0] = weight[1] = 1;
+  if (kind == PairKind::vertex_face) {
+    return vertex_face_distance(x[0], x[1], x[2], x[3], weight + 1);
   }
+  double s = 0, t = 0, distance = 0;
+  if (kind == PairKind::edge_edge) {
+    distance = edge_edge_distance(x[0], x[1], x[2], x[3], &s, &t);
+    weight[0] = 1 - s, weight[1] = s, weight[2] = 1 - t, weight[3] = t;
+  } else if (kind == PairKind::vertex_edge) {
+    distance = edge_edge_distance(x[0], x[0], x[1], x[2], &s, &t);
+    weight[1] = 1 - t, weight[2] = t;
+  } else {
+    distance = edge_edge_distance(x[0], x[0], x[1], x[1], &s, &t);
+  }
+  return distance;
 }
 
 /// One index = one pair of features. Writes its own entry; any order.

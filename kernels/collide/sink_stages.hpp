@@ -9,7 +9,7 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/base/cell_pair.hpp"
+#include "kernels/base/key_value.hpp"
 #include "kernels/collide/touch_on_way.hpp"
 
 namespace tetwarp {
@@ -66,36 +66,36 @@ struct SinkBody {
                            Emit& emit) const {
     if (!view.moves(body)) return;
     if (view.is_rigid(body)) {
-      emit(make_pair(owners.of_body(body), i, is_b));
+      emit(make_key_value(owners.of_body(body), i, is_b));
       return;
     }
     for (int k = 0; k < 3 && vertex[k] >= 0; ++k) {
-      if (weight[k] > 0) emit(make_pair(vertex[k], i, is_b));
+      if (weight[k] > 0) emit(make_key_value(vertex[k], i, is_b));
     }
   }
 };
 
 /// Of entries that are sorted by owner: the touch that pushes first among those from `begin` on of
 /// its owner and before `end`.
-TETWARP_HD CellPair first_push(View<const PairTouch> touches,
-                               View<const CellPair> sinks,
+TETWARP_HD KeyValue first_push(View<const PairTouch> touches,
+                               View<const KeyValue> sinks,
                                std::int64_t begin,
                                std::int64_t end) {
-  CellPair first = sinks[begin];
-  for (std::int64_t k = begin + 1; k < end && cell_of(sinks[k]) == cell_of(first); ++k) {
-    if (pushes_before(touches[tet_of(sinks[k])], touches[tet_of(first)])) first = sinks[k];
+  KeyValue first = sinks[begin];
+  for (std::int64_t k = begin + 1; k < end && key_of(sinks[k]) == key_of(first); ++k) {
+    if (pushes_before(touches[value_of(sinks[k])], touches[value_of(first)])) first = sinks[k];
   }
   return first;
 }
-TETWARP_HD bool begins_owner(View<const CellPair> sinks, std::int64_t i) {
-  return i == 0 || cell_of(sinks[i - 1]) != cell_of(sinks[i]);
+TETWARP_HD bool begins_owner(View<const KeyValue> sinks, std::int64_t i) {
+  return i == 0 || key_of(sinks[i - 1]) != key_of(sinks[i]);
 }
 
 /// One index = one entry of SinkBody, sorted by owner. The first of an owner, and every 64th entry,
 /// appends the touch that pushes first of the owner's next entries, so that no index looks at many.
 struct FirstPushBody {
   View<const PairTouch> touches;
-  View<const CellPair> sinks;
+  View<const KeyValue> sinks;
 
   template <class Emit>
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
@@ -108,20 +108,20 @@ struct FirstPushBody {
 /// One index = one entry of FirstPushBody. The first of an owner writes the owner's way out.
 struct WayOutBody {
   View<const PairTouch> touches;
-  View<const CellPair> sinks;
-  View<CellPair> ways;  ///< out [owners] an entry of the owner
+  View<const KeyValue> sinks;
+  View<KeyValue> ways;  ///< out [owners] an entry of the owner
 
   TETWARP_HD void operator()(std::int64_t i) const {
     if (!begins_owner(sinks, i)) return;
-    ways[cell_of(sinks[i])] = first_push(touches, sinks, i, sinks.size);
+    ways[key_of(sinks[i])] = first_push(touches, sinks, i, sinks.size);
   }
 };
 
 /// One index = one owner. Writes that it has no way out; any order.
 struct NoWayOutBody {
-  View<CellPair> ways;  ///< out
+  View<KeyValue> ways;  ///< out
 
-  TETWARP_HD void operator()(std::int64_t i) const { ways[i] = rejected_pair; }
+  TETWARP_HD void operator()(std::int64_t i) const { ways[i] = no_key_value; }
 };
 
 /// One index = one touch. Leaves it out if its features are apart by more than nine tenths of the
@@ -135,16 +135,16 @@ struct SunkHitBody {
   View<const FeatureTouch> pairs;
   TouchView view;
   SinkOwners owners;
-  View<const CellPair> ways;
+  View<const KeyValue> ways;
   View<PairTouch> touches;  ///< in and out: `counts` and `is_hit`
 
   TETWARP_HD void operator()(std::int64_t i) const {
     PairTouch& touch = touches[i];
     if (!touch.counts || touch.kind == PairKind::vertex_plane) return;
     if (!touch.is_hit && touch.is_of_face()) return;
-    const CellPair way_a = way_out(touch.body_a, touch.vertex_a, touch.weight_a);
-    const CellPair way_b = way_out(touch.body_b, touch.vertex_b, touch.weight_b);
-    if (way_a == rejected_pair && way_b == rejected_pair) return;
+    const KeyValue way_a = way_out(touch.body_a, touch.vertex_a, touch.weight_a);
+    const KeyValue way_b = way_out(touch.body_b, touch.vertex_b, touch.weight_b);
+    if (way_a == no_key_value && way_b == no_key_value) return;
     FeatureTouch at = pairs[i];
     const bool is_soft = is_deformable(touch.body_a) && is_deformable(touch.body_b);
     if (at.start_distance < 2 * view.thickness) {
@@ -175,16 +175,17 @@ struct SunkHitBody {
   }
 
   /// Of a deformable side: of its vertices' ways out, the one that pushes first.
-  /// @returns rejected_pair: none
-  TETWARP_HD CellPair way_out(std::int32_t body,
+  /// @returns no_key_value: none
+  TETWARP_HD KeyValue way_out(std::int32_t body,
                               const std::int32_t* vertex,
                               const double* weight) const {
     if (view.is_rigid(body)) return ways[owners.of_body(body)];
-    CellPair first = rejected_pair;
+    KeyValue first = no_key_value;
     for (int k = 0; k < 3 && vertex[k] >= 0; ++k) {
-      const CellPair own = ways[vertex[k]];
-      if (!(weight[k] > 0) || own == rejected_pair) continue;
-      if (first == rejected_pair || pushes_before(touches[tet_of(own)], touches[tet_of(first)])) {
+      const KeyValue own = ways[vertex[k]];
+      if (!(weight[k] > 0) || own == no_key_value) continue;
+      if (first == no_key_value ||
+          pushes_before(touches[value_of(own)], touches[value_of(first)])) {
         first = own;
       }
     }
@@ -193,10 +194,10 @@ struct SunkHitBody {
   /// By how much a side has been pushed out at a time.
   /// @param own     direction in which the touch pushes this side
   /// @param cosine  of its largest angle to a way out along which it pushes
-  TETWARP_HD Vec3 move(CellPair way, const Vec3& own, double cosine, double time) const {
-    if (way == rejected_pair) return {};
-    const PairTouch& touch = touches[tet_of(way)];
-    const Vec3 out = is_accepted(way) ? times(-1, touch.normal) : touch.normal;
+  TETWARP_HD Vec3 move(KeyValue way, const Vec3& own, double cosine, double time) const {
+    if (way == no_key_value) return {};
+    const PairTouch& touch = touches[value_of(way)];
+    const Vec3 out = flag_of(way) ? times(-1, touch.normal) : touch.normal;
     if (!(dot(out, own) < cosine)) return {};
     const double depth = time * (depth_of(touch) + touch.gap) - touch.gap;
     return times(max_of(0.0, depth), out);

@@ -3,8 +3,8 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/base/cell_pair.hpp"
 #include "kernels/base/heap_sort.hpp"
+#include "kernels/base/key_value.hpp"
 #include "kernels/collide/touch_on_way.hpp"
 
 namespace tetwarp {
@@ -118,10 +118,10 @@ struct TouchKeyBody {
   TouchList touches;
   std::int64_t vertex_count;
 
-  TETWARP_HD CellPair operator()(std::int64_t i) const {
+  TETWARP_HD KeyValue operator()(std::int64_t i) const {
     const PairTouch& touch = touches[i];
     const std::int64_t first = touch.is_of_edges() ? vertex_count : 0;
-    return make_pair(first + touch.a, i, false);
+    return make_key_value(first + touch.a, i);
   }
 };
 
@@ -137,28 +137,28 @@ struct TouchChoiceBody {
 
   TouchList touches;
   CollideView scene;
-  View<const CellPair> given;  ///< sorted by first feature
-  View<CellPair> order;        ///< out: the same; touches of a vertex by body, time and distance
+  View<const KeyValue> given;  ///< sorted by first feature
+  View<KeyValue> order;        ///< out: the same; touches of a vertex by body, time and distance
   View<std::int8_t> mark;      ///< out [order] Mark
 
   TETWARP_HD void operator()(std::int64_t i) const {
-    if (i > 0 && cell_of(given[i - 1]) == cell_of(given[i])) return;
+    if (i > 0 && key_of(given[i - 1]) == key_of(given[i])) return;
     std::int64_t end = i;
-    for (; end < given.size && cell_of(given[end]) == cell_of(given[i]); ++end) {
+    for (; end < given.size && key_of(given[end]) == key_of(given[i]); ++end) {
       order[end] = given[end];
     }
     if (touch_at(i).is_of_edges()) {
       for (std::int64_t k = i; k < end; ++k) mark[k] = is_left_out(k, i, end) ? dropped : kept;
       return;
     }
-    heap_sort(order.data + i, end - i, [this](CellPair p, CellPair q) {
-      return comes_before(touches[tet_of(p)], touches[tet_of(q)]);
+    heap_sort(order.data + i, end - i, [this](KeyValue p, KeyValue q) {
+      return comes_before(touches[value_of(p)], touches[value_of(q)]);
     });
     for (std::int64_t first = i; first < end;) first = choose(first, i, end);
   }
 
  private:
-  TETWARP_HD const PairTouch& touch_at(std::int64_t k) const { return touches[tet_of(order[k])]; }
+  TETWARP_HD const PairTouch& touch_at(std::int64_t k) const { return touches[value_of(order[k])]; }
 
   TETWARP_HD static bool comes_before(const PairTouch& p, const PairTouch& q) {
     if (p.body_b != q.body_b) return p.body_b < q.body_b;
@@ -231,13 +231,13 @@ struct ChosenTouchBody {
   TouchList touches;
   TouchAreaView areas;
   View<const double> start;  ///< [vertices][3]
-  View<const CellPair> order;
+  View<const KeyValue> order;
   View<const std::int8_t> mark;
 
   template <class Emit>
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
     if (mark[i] == TouchChoiceBody::dropped) return;
-    const PairTouch& touch = touches[tet_of(order[i])];
+    const PairTouch& touch = touches[value_of(order[i])];
     emit(ChosenTouch{touch, mark[i] == TouchChoiceBody::kept_with_area ? area_of(touch) : 0});
   }
 

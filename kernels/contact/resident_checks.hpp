@@ -1,12 +1,13 @@
 /// @file resident_checks.hpp
 /// Checks of a problem whose arrays are in memory of the executor. They only decide whether the
 /// checks of the host would pass: if not, the host copies the arrays and repeats its checks for the
-/// message.
+/// message. So their limits are stricter, see CheckLimit.
 #pragma once
 #include <cstdint>
 
 #include "kernels/base/plain_sums.hpp"
 #include "kernels/base/view.hpp"
+#include "kernels/contact/check_limits.hpp"
 #include "kernels/contact/contact_fill.hpp"
 #include "kernels/contact/contact_indices.hpp"
 
@@ -114,7 +115,8 @@ struct ContactCheckBody {
 
   TETWARP_HD BadCount operator()(std::int64_t c) const {
     const ContactInput& in = scales.in;
-    const double rounding = (scales.is_local ? 1e-29 : 1e-13) * largest->value[0];
+    const double share = scales.is_local ? delassus_rounding.resident : jacobian_rounding.resident;
+    const double rounding = share * largest->value[0];
     double size[3];
     for (int a = 0; a < 3; ++a) size[a] = scales.size_of_row(3 * c + a, scales.is_local);
     const View<const double> tangential =
@@ -129,7 +131,7 @@ struct ContactCheckBody {
         in.stiffness.size > 0) {
       const double difference =
           add_rn(in.gap[3 * c], -mul_rn(in.time_step, in.given_velocity[3 * c]));
-      is_bad = is_bad || fabs(difference) > 0.99e-9 * largest->value[1];
+      is_bad = is_bad || fabs(difference) > spring_rounding.resident * largest->value[1];
     }
     return {{is_bad ? 1.0 : 0.0}};
   }
@@ -144,7 +146,8 @@ struct SemidefiniteCheckBody {
     const double own = sqrt(max_of(scales.size_of_row(row, true), 0.0));
     for (std::int64_t e = scales.rows.row_start[row]; e < scales.rows.row_start[row + 1]; ++e) {
       const double other = sqrt(max_of(scales.size_of_row(scales.rows.column[e], true), 0.0));
-      const double bound = 1.09 * own * other + 0.99e-9 * largest->value[0];
+      const double bound = semidefinite_slack.resident * own * other +
+                           semidefinite_rounding.resident * largest->value[0];
       if (!(fabs(scales.in.matrix[e]) <= bound)) return {{1}};
     }
     return {};
@@ -152,15 +155,14 @@ struct SemidefiniteCheckBody {
 };
 
 /// One index = one block of A: 1 where it is not symmetric, not clearly positive definite, or of
-/// more than 12 dofs.
+/// more than largest_dense_block dofs.
 struct BlockCheckBody {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> diagonal_value;
   View<const double> system;
 
   TETWARP_HD BadCount operator()(std::int64_t b) const {
-    constexpr int most = 12;
-    constexpr double smallest_pivot = 1e-13, asymmetry = 0.5e-9;
+    constexpr int most = largest_dense_block;
     const std::int64_t first = diagonal_value[b];
     const std::int64_t dofs = dof_start[b + 1] - dof_start[b];
     if (dofs > most) return {{1}};
@@ -169,13 +171,13 @@ struct BlockCheckBody {
       double pivot = system[first + j * dofs + j];
       const double diagonal = pivot;
       for (int k = 0; k < j; ++k) pivot -= factor[j][k] * factor[j][k];
-      if (!(pivot > smallest_pivot * diagonal && diagonal > 0)) return {{1}};
+      if (!(pivot > smallest_pivot.resident * diagonal && diagonal > 0)) return {{1}};
       factor[j][j] = sqrt(pivot);
       for (int i = j + 1; i < dofs; ++i) {
         double sum = system[first + i * dofs + j];
         const double mirrored = system[first + j * dofs + i];
         const double size = max_of(diagonal, system[first + i * dofs + i]);
-        if (!(fabs(sum - mirrored) <= asymmetry * size)) return {{1}};
+        if (!(fabs(sum - mirrored) <= asymmetry.resident * size)) return {{1}};
         for (int k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
         factor[i][j] = sum / factor[j][j];
       }

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "kernels/base/atomic_add.hpp"
-#include "kernels/base/cell_pair.hpp"
+#include "kernels/base/key_value.hpp"
 #include "kernels/body/contact_arms.hpp"
 #include "kernels/body/surface_move.hpp"
 #include "kernels/contact/compliant_body.hpp"
@@ -147,7 +147,7 @@ struct TouchListBody {
   View<std::int32_t> row, node, contact, part;  ///< out, [blocks]
   View<std::int32_t> part_block, part_body;     ///< out, [parts + 1], [parts]
   View<double> jacobian;                        ///< out, [blocks][9]
-  View<CellPair> touches;                       ///< out, [blocks] rows and blocks
+  View<KeyValue> touches;                       ///< out, [blocks] rows and blocks
 
   TETWARP_HD void operator()(std::int64_t c) const {
     std::int64_t next = counted.first_block(c), next_part = counted.first_part(c);
@@ -173,7 +173,7 @@ struct TouchListBody {
         node[next] = static_cast<std::int32_t>(counted.first_node(first_row + k));
         contact[next] = static_cast<std::int32_t>(c);
         part[next] = static_cast<std::int32_t>(next_part - 1);
-        touches[next] = make_pair(first_row + k, next, false);
+        touches[next] = make_key_value(first_row + k, next);
       }
     });
   }
@@ -181,17 +181,17 @@ struct TouchListBody {
 
 /// One index = one row, the end of the list of rows, or one block: lists the blocks of each row.
 struct RowTouchesBody {
-  View<const CellPair> touches;    ///< sorted by row, then block
+  View<const KeyValue> touches;    ///< sorted by row, then block
   View<std::int32_t> touch_start;  ///< out, [rows + 1]
   View<std::int32_t> touch;        ///< out, [blocks]
 
   TETWARP_HD void operator()(std::int64_t i) const {
-    if (i < touches.size) touch[i] = tet_of(touches[i]);
+    if (i < touches.size) touch[i] = value_of(touches[i]);
     if (i >= touch_start.size) return;
     std::int64_t begin = 0, end = touches.size;
     while (begin < end) {
       const std::int64_t middle = (begin + end) / 2;
-      if (cell_of(touches[middle]) < i) {
+      if (key_of(touches[middle]) < i) {
         begin = middle + 1;
       } else {
         end = middle;

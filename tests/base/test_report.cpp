@@ -10,17 +10,12 @@
 #include <tetwarp/report.hpp>
 #include <tetwarp/version.hpp>
 
+#include "tests/support/json_names.hpp"
 #include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {
 using Json = nlohmann::json;
-
-std::set<std::string> names_of(const Json& object) {
-  std::set<std::string> names;
-  for (const auto& [name, value] : object.items()) names.insert(name);
-  return names;
-}
 
 Report report_of_two_steps() {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 24);

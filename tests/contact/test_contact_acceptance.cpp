@@ -153,11 +153,10 @@ TEST(ElasticAcceptance, ThePlainOuterIterationDivergesAndHalfOfItConverges) {
   const ContactProblem problem = make_elastic_problem({.young = 1e5, .time_step = 5e-3});
   ContactOptions options = {.method = ContactMethod::gauss_seidel,
                             .tolerance = 1e-8,
-                            .coupling = ContactCoupling::iterated,
-                            .relaxation = 1};
+                            .expert = {.coupling = ContactCoupling::iterated, .relaxation = 1}};
 
   const ContactSolution plain = solve_contacts(problem, options);
-  options.relaxation = 0.5;
+  options.expert.relaxation = 0.5;
   const ContactSolution relaxed = solve_contacts(problem, options);
 
   EXPECT_EQ(plain.report.status, ContactStatus::not_converged);

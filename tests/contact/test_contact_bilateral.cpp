@@ -190,28 +190,29 @@ TEST(ContactBilateral, IsRefusedInOneLine) {
   const struct {
     void (*spoil)(ContactProblem&);
     const char* text;
-  } cases[] = {{[](ContactProblem& p) { p.bilateral.compliance[1] = -1; },
-                "bilateral.compliance[1]: -1 is negative"},
-               {[](ContactProblem& p) { p.bilateral.compliance[1] = INFINITY; },
-                "bilateral.compliance[1]: inf is not finite"},
-               {[](ContactProblem& p) { p.bilateral.compliance.pop_back(); },
-                "bilateral.compliance: 5 entries, expected 6"},
-               {[](ContactProblem& p) { p.bilateral.target[2] = NAN; },
-                "bilateral.target[2]: nan is not finite"},
-               {[](ContactProblem& p) {
-                  p.bilateral.group_start = {0, 4, 6};
-                },
-                "bilateral.group_start[1]: 4 makes a group of 4 rows"},
-               {[](ContactProblem& p) {
-                  p.bilateral.group_start = {0, 3};
-                },
-                "bilateral.group_start[1]: 3, expected the number of rows, 6"},
-               {[](ContactProblem& p) { p.bilateral.jacobian.columns = 7; }, "bilateral.jacobian"},
-               {[](ContactProblem& p) {
-                  p.bilateral.jacobian.value.assign(p.bilateral.jacobian.value.size(), 0);
-                },
-                "bilateral.jacobian: row 0 is zero"},
-               {[](ContactProblem& p) { p.row_blocks.kind = {0}; }, "row_blocks: not empty"}};
+  } cases[] = {
+      {[](ContactProblem& p) { p.bilateral.compliance[1] = -1; },
+       "bilateral.compliance[1]: -1 is negative"},
+      {[](ContactProblem& p) { p.bilateral.compliance[1] = INFINITY; },
+       "bilateral.compliance[1]: inf is not finite"},
+      {[](ContactProblem& p) { p.bilateral.compliance.pop_back(); },
+       "bilateral.compliance: 5 entries, expected 6"},
+      {[](ContactProblem& p) { p.bilateral.target[2] = NAN; },
+       "bilateral.target[2]: nan is not finite"},
+      {[](ContactProblem& p) {
+         p.bilateral.group_start = {0, 4, 6};
+       },
+       "bilateral.group_start[1]: 4 makes a group of 4 rows"},
+      {[](ContactProblem& p) {
+         p.bilateral.group_start = {0, 3};
+       },
+       "bilateral.group_start[1]: 3, expected the number of rows, 6"},
+      {[](ContactProblem& p) { p.bilateral.jacobian.columns = 7; }, "bilateral.jacobian"},
+      {[](ContactProblem& p) {
+         p.bilateral.jacobian.value.assign(p.bilateral.jacobian.value.size(), 0);
+       },
+       "bilateral.jacobian: row 0 is zero"},
+      {[](ContactProblem& p) { p.expert.row_blocks.kind = {0}; }, "expert.row_blocks: not empty"}};
   for (const auto& [spoil, text] : cases) {
     ContactProblem problem = jointed_problem(702, 0);
     spoil(problem);

@@ -50,10 +50,11 @@ TEST(ContactBudget, TimeEndsEveryPhase) {
     EXPECT_LT(solution.report.total_seconds, 2);  // the machine may be busy
     EXPECT_LT(solution.report.residual.eta, 1e-2);
   }
-  const ContactSolution solution = solve_contacts(elastic, {.tolerance = unreachable,
-                                                            .max_sweeps = many,
-                                                            .coupling = ContactCoupling::iterated,
-                                                            .max_seconds = 0.1});
+  const ContactSolution solution =
+      solve_contacts(elastic, {.tolerance = unreachable,
+                               .max_sweeps = many,
+                               .expert = {.coupling = ContactCoupling::iterated},
+                               .max_seconds = 0.1});
   EXPECT_TRUE(has_reason(solution, "max_seconds")) << solution.report.status_reason;
   EXPECT_LT(solution.report.total_seconds, 2);
   expect_finite(solution);
@@ -79,8 +80,8 @@ TEST(ContactBudget, MemoryLimitKeepsNewtonAndCondensingFromRunning) {
   EXPECT_TRUE(has_reason(newton, "max_memory")) << newton.report.status_reason;
 
   const ContactProblem elastic = scenes::elastic_slab({.cubes = {3, 3, 2}, .contacts = 5});
-  const ContactSolution iterated =
-      solve_contacts(elastic, {.coupling = ContactCoupling::condensed, .max_memory = 1000});
+  const ContactSolution iterated = solve_contacts(
+      elastic, {.expert = {.coupling = ContactCoupling::condensed}, .max_memory = 1000});
   EXPECT_GT(iterated.report.outer_iterations, 0);
   EXPECT_TRUE(iterated.converged()) << iterated.report.status_reason;
 }
@@ -96,7 +97,7 @@ TEST(ContactBudget, TheCallbackCancelsAnywhere) {
         const ContactSolution solution = solve_contacts(
             *problem, {.tolerance = unreachable,
                        .max_sweeps = 20,
-                       .coupling = coupling,
+                       .expert = {.coupling = coupling},
                        .progress = [&](const ContactProgress&) { return left-- > 0; }});
 
         EXPECT_TRUE(has_reason(solution, "cancelled")) << solution.report.status_reason;

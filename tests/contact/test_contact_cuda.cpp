@@ -96,7 +96,7 @@ TEST_P(ContactCudaMethods, SolvesAnIslandLargerThanABlockTakes) {
   EXPECT_GT(make_structure(problem, {.converged_islands = false}).islands[0].contact_count(),
             block_contacts);
   ContactOptions options = {.method = GetParam(), .tolerance = 1e-4};
-  options.skip.converged_islands = false;
+  options.expert.skip.converged_islands = false;
 
   const ContactSolution there = expect_solved(problem, options, "large");
   const ContactSolution here = solve_contacts(problem, options);
@@ -154,7 +154,7 @@ TEST_F(ContactCuda, CoupledAndUncoupledIslandsCanBeMixed) {
   mixed.adhesion = {};
   for (const ContactCoupling coupling :
        {ContactCoupling::automatic, ContactCoupling::condensed, ContactCoupling::iterated}) {
-    expect_solved(mixed, {.tolerance = 1e-8, .coupling = coupling}, "mixed");
+    expect_solved(mixed, {.tolerance = 1e-8, .expert = {.coupling = coupling}}, "mixed");
   }
 }
 
@@ -185,7 +185,7 @@ TEST_F(ContactCuda, FrozenContactsAreLeftOut) {
   ContactOptions options = {.method = ContactMethod::gauss_seidel, .tolerance = 1e-9};
   const ContactProblem problem = scenes::sphere_packing({.seed = 309, .edge = 4});
   const ContactSolution with = expect_solved(problem, options, "frozen");
-  options.skip.frozen_contacts = false;
+  options.expert.skip.frozen_contacts = false;
   const ContactSolution without = expect_solved(problem, options, "all active");
 
   EXPECT_GT(with.report.updates_skipped, 0);
@@ -212,7 +212,7 @@ TEST_F(ContactCuda, HasTheSameBitsEveryTime) {
 TEST_F(ContactCuda, ResidualHistoryEndsAtTheResidual) {
   const ContactProblem problem = scenes::sphere_packing({.seed = 312, .edge = 4, .kept = 0.4});
   ContactOptions options = {.method = ContactMethod::gauss_seidel, .tolerance = 1e-10};
-  options.skip.frozen_contacts = false;
+  options.expert.skip.frozen_contacts = false;
   const ContactReport report = expect_solved(problem, options, "history").report;
 
   ASSERT_GT(report.residual_history.size(), 5U);

@@ -74,7 +74,7 @@ TEST_P(EachModel, HasTheVelocitiesOfTheReference) {
          {ContactMethod::automatic, ContactMethod::gauss_seidel, ContactMethod::nonlinear_cg}) {
       for (const auto coupling : {ContactCoupling::iterated, ContactCoupling::condensed}) {
         options.method = method;
-        options.coupling = coupling;
+        options.expert.coupling = coupling;
         const std::string what = "problem " + std::to_string(k) + ", " + report_name_of(method);
 
         const ContactSolution solution = solve_contacts(problems[k], options);
@@ -93,7 +93,8 @@ TEST_P(EachModel, HasTheVelocitiesOfTheReference) {
 /// If A couples no blocks, D = A, and the inner problem is the whole problem.
 TEST(BlockJacobi, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactProblem problem = global_problem(133, 6, 0);
-  const ContactOptions options = {.tolerance = 1e-9, .relaxation = 1, .inner_sweeps = 2000};
+  const ContactOptions options = {.tolerance = 1e-9,
+                                  .expert = {.relaxation = 1, .inner_sweeps = 2000}};
   const ContactStages stages(problem, options);
   CpuContactExec exec(1);
   const CoupledTask task{options,
@@ -135,7 +136,7 @@ TEST(BlockJacobi, HalfTheRelaxationTakesTwiceTheSteps) {
   const ContactProblem problem = make_elastic_problem({});
   ContactOptions options = iterated(ContactMethod::gauss_seidel);
   const auto half = static_cast<double>(solve_contacts(problem, options).report.outer_iterations);
-  options.relaxation = 0.25;
+  options.expert.relaxation = 0.25;
 
   const auto quarter =
       static_cast<double>(solve_contacts(problem, options).report.outer_iterations);
@@ -148,8 +149,8 @@ TEST(BlockJacobi, HalfTheRelaxationTakesTwiceTheSteps) {
 /// each are solved by one sweep for any inner_sweeps.
 TEST(BlockJacobi, InnerSweepsSaveStepsWhereContactsShareBodies) {
   ContactOptions once = iterated(), often = iterated();
-  once.inner_sweeps = 1;
-  often.inner_sweeps = 20;
+  once.expert.inner_sweeps = 1;
+  often.expert.inner_sweeps = 20;
   const ContactProblem bodies = global_problem(134, 12, 0.4);
   const ContactProblem nodes = make_elastic_problem({});
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <tetwarp/contact.hpp>
 
+#include "tests/support/json_names.hpp"
+
 namespace tetwarp::test {
 namespace {
 using Json = nlohmann::json;
@@ -37,12 +39,6 @@ ContactReport counting_report() {
   report.solve_seconds = 3.5;
   report.total_seconds = 6.25;
   return report;
-}
-
-std::set<std::string> names_of(const Json& json) {
-  std::set<std::string> names;
-  for (const auto& item : json.items()) names.insert(item.key());
-  return names;
 }
 
 /// The names are stable.

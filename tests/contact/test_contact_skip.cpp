@@ -25,7 +25,7 @@ ContactSolution solve(const ContactProblem& problem,
                       bool is_on,
                       ContactMethod method = ContactMethod::automatic) {
   ContactOptions options{.method = method, .tolerance = tolerance, .max_sweeps = 100000};
-  options.skip.*choice = is_on;
+  options.expert.skip.*choice = is_on;
   ContactSolution solution = solve_contacts(problem, options);
   EXPECT_TRUE(solution.converged()) << solution.report.status_reason;
   return solution;
@@ -183,7 +183,7 @@ TEST(ContactSkip, CoupledIslandsStayCondensedWhileTheSystemStays) {
   for (double& value : stiffer.system.value) value *= 2;
   ContactOptions options{.tolerance = tolerance, .max_sweeps = 100000};
   ContactSolver on(options);
-  options.skip.constant_systems = false;
+  options.expert.skip.constant_systems = false;
   ContactSolver off(options);
   const std::pair<const ContactProblem*, std::int64_t> steps[] = {
       {&problem, 0}, {&pushed, 1}, {&stiffer, 0}, {&stiffer, 1}};

@@ -186,7 +186,8 @@ TEST(ContactSolver, TheHistoryEndsWithTheResidual) {
 /// Bodies that A couples are iterated in float32 first and, if that is not enough, in float64.
 TEST(ContactSolver, IteratesInFloat32FirstWithThatOption) {
   const ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
-  ContactOptions options = {.max_sweeps = 100000, .coupling = ContactCoupling::iterated};
+  ContactOptions options = {.max_sweeps = 100000,
+                            .expert = {.coupling = ContactCoupling::iterated}};
   for (const double tolerance : {1e-3, 1e-9}) {
     options.tolerance = tolerance;
     options.precision = ContactPrecision::float64;

@@ -9,29 +9,12 @@
 #include <tetwarp/contact_tracker.hpp>
 #include <vector>
 
+#include "host/base/point3.hpp"
+#include "tests/support/tracker_reports.hpp"
+
 namespace tetwarp::test {
 namespace {
 constexpr double dt = 0.01;
-constexpr double area = 1e-4;
-constexpr double stiffness = 1e6;
-
-/// Glue that bonds at the first touch and never debonds.
-ContactTrackerOptions glue(double match_distance = 0) {
-  ContactTrackerOptions options;
-  options.materials = {{.friction = 0.5, .stiffness = stiffness, .initial_intensity = 1}};
-  options.match_distance = match_distance;
-  return options;
-}
-
-/// Body 1 above body 0, touching at (x, 0, z).
-ReportedContact at(double x, std::int32_t feature, double gap = 0, double z = 0) {
-  ReportedContact report;
-  report.key = {1, feature, 0, 0};
-  report.point_a_world = {x, 0, z + gap};
-  report.point_b_world = {x, 0, z};
-  report.area = area;
-  return report;
-}
 
 BodyPose moved(double x, double y, double z) {
   return {{x, y, z}, {1, 0, 0, 0}};
@@ -54,10 +37,6 @@ void step(ContactTracker& tracker,
           const std::vector<BodyPose>& poses = {2, BodyPose{}}) {
   const std::size_t count = tracker.begin_step(reports, poses, dt).size();
   tracker.end_step(rest(count), poses);
-}
-
-double length(const Point3& v) {
-  return std::hypot(v[0], v[1], v[2]);
 }
 
 TEST(ContactTracker, TouchingGivesTheInitialIntensityAndAnApproachDoesNot) {
@@ -183,7 +162,7 @@ TEST(ContactTracker, MeasuresTangentialGapsBetweenTheMaterialPoints) {
   const TrackedContact contact = tracker.begin_step({}, poses, dt).front();
 
   EXPECT_NEAR(contact.gap[0], 0, 1e-18);
-  EXPECT_NEAR(length(contact.gap), std::hypot(1e-3, 2e-3), 1e-17);
+  EXPECT_NEAR(norm(contact.gap), std::hypot(1e-3, 2e-3), 1e-17);
   const Point3 down = {-c, 0, -c};  // the key's order turns the normal: from body 1 to body 0
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(contact.axes[0][k], down[k], 1e-15);
 }
@@ -217,7 +196,7 @@ TEST(ContactTracker, BondsThatFormKeepTheForce) {
   const std::vector<BodyPose> slid = {moved(0, 0, 0), moved(1e-4, 2e-4, 0)};
   const Point3 before = tracker.begin_step(std::vector{at(1e-4, 0)}, slid, dt).front().gap;
 
-  tracker.end_step(impulses({1e-2 * area * 1e4, 0, 0}), slid);
+  tracker.end_step(impulses({1e-2 * report_area * 1e4, 0, 0}), slid);
 
   const double beta = tracker.records()[0].intensity;
   ASSERT_NEAR(beta, 1, 1e-12);  // 0.5 + dt r p with p = 10 kPa
@@ -248,7 +227,7 @@ TEST(ContactTracker, FillsAProblemThatPassesTheChecks) {
   EXPECT_EQ(problem.contact_count(), 3);
   EXPECT_NO_THROW(check_problem(problem));
   EXPECT_NEAR(problem.velocity_offset[0], 0.1, 1e-15);
-  EXPECT_EQ(problem.adhesion.tangential_stiffness[0], stiffness);
+  EXPECT_EQ(problem.adhesion.tangential_stiffness[0], report_stiffness);
 }
 
 TEST(ContactTracker, RefusesWhatItCannotFollow) {

@@ -8,28 +8,11 @@
 #include <tetwarp/contact_tracker.hpp>
 #include <vector>
 
+#include "tests/support/tracker_reports.hpp"
+
 namespace tetwarp::test {
 namespace {
 constexpr double dt = 0.01;
-constexpr double area = 1e-4;
-constexpr double stiffness = 1e6;
-
-/// Glue that bonds at the first touch and never debonds.
-ContactTrackerOptions glue() {
-  ContactTrackerOptions options;
-  options.materials = {{.friction = 0.5, .stiffness = stiffness, .initial_intensity = 1}};
-  return options;
-}
-
-/// Body 1 above body 0, touching at (x, 0, 0).
-ReportedContact at(double x, std::int32_t feature) {
-  ReportedContact report;
-  report.key = {1, feature, 0, 0};
-  report.point_a_world = {x, 0, 0};
-  report.point_b_world = {x, 0, 0};
-  report.area = area;
-  return report;
-}
 
 ContactSolution rest(std::size_t contacts) {
   ContactSolution solution;

@@ -27,7 +27,7 @@ TEST(ContactArraysEmulated, ASolveCopiesCountsAndNoArray) {
       scenes::sphere_packing({.seed = 62, .edge = 6})};
   for (const ContactProblem& problem : problems) {
     ContactOptions options{.tolerance = 1e-3, .backend = Backend::cuda};
-    options.skip.converged_islands = false;
+    options.expert.skip.converged_islands = false;
     ContactSolver solver(options);
     solver.set_structure(problem);
     const DeviceProblem device(problem);
@@ -70,7 +70,7 @@ TEST(ContactArraysEmulated, ZerosWithinBlocksChangeNothing) {
 TEST(ContactArraysEmulated, IslandsThatDoNotConvergeAreNotSentAgain) {
   const ContactProblem problem = scenes::sphere_packing({.seed = 65, .edge = 4, .kept = 0.4});
   ContactOptions options{.tolerance = 1e-13, .max_sweeps = 40, .backend = Backend::cuda};
-  options.skip.converged_islands = false;
+  options.expert.skip.converged_islands = false;
   ContactSolver solver(options);
   solver.set_structure(problem);
   const DeviceProblem device(problem);
@@ -88,7 +88,7 @@ TEST(ContactArraysEmulated, ProgressEndsASolve) {
       scenes::random_local({.seed = 46, .contacts = 2100, .neighbors = 2});
   int left = 5;
   ContactOptions options{.tolerance = 1e-12, .backend = Backend::cuda};
-  options.skip.converged_islands = false;
+  options.expert.skip.converged_islands = false;
   options.progress = [&](const ContactProgress&) { return left-- > 0; };
   ContactSolver solver(options);
   solver.set_structure(problem);

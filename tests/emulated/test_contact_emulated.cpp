@@ -26,7 +26,7 @@ DeviceCalls calls_of(ContactSolver& solver, const ContactProblem& problem) {
 /// Small islands, a large one, elastic bodies.
 TEST(ContactEmulated, ASolverThatGoesOnAllocatesNothing) {
   ContactOptions large = {.tolerance = 1e-2, .backend = Backend::cuda};
-  large.skip.converged_islands = false;
+  large.expert.skip.converged_islands = false;
   ContactOptions elastic = iterated();
   elastic.tolerance = 1e-4;
   elastic.backend = Backend::cuda;
@@ -74,7 +74,7 @@ TEST(ContactEmulated, LargeIslandsHaveTheSameBitsWithAndWithoutSynchronizedGrids
       ContactOptions options = {.method = method, .tolerance = 1e-3, .backend = Backend::cuda};
       options.max_sweeps = 60;
       options.max_newton = 0;
-      options.skip.converged_islands = false;
+      options.expert.skip.converged_islands = false;
       simt::Device::only().is_cooperative = 0;
       ContactSolver by_stages(options);
       simt::Device::only().is_cooperative = 1;
@@ -93,7 +93,7 @@ TEST(ContactEmulated, LargeIslandsAreSolvedByOneLaunch) {
   const ContactProblem problem =
       scenes::random_local({.seed = 326, .contacts = 2049, .neighbors = 2});
   ContactOptions options = {.tolerance = 1e-2, .backend = Backend::cuda};
-  options.skip.converged_islands = false;
+  options.expert.skip.converged_islands = false;
   ContactSolver few(options);
   options.tolerance = 1e-6;
   ContactSolver many(options);

@@ -45,7 +45,7 @@ class ResidentSeries {
  private:
   static WarpOptions options(const Grid& grid, bool has_classes) {
     WarpOptions options{.output_grid = grid, .backend = Backend::cuda};
-    options.skip.interior_cells = has_classes;
+    options.expert.skip.interior_cells = has_classes;
     return options;
   }
 

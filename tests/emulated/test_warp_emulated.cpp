@@ -17,8 +17,8 @@ namespace {
 WarpOptions on_device(bool updates = true, bool masks = false) {
   WarpOptions options;
   options.backend = Backend::cuda;
-  options.skip.unchanged_tets = updates;
-  options.skip.grid_point_masks = masks;
+  options.expert.skip.unchanged_tets = updates;
+  options.expert.skip.grid_point_masks = masks;
   return options;
 }
 
@@ -180,7 +180,7 @@ TEST(WarpEmulated, InteriorCellsHaveTheBitsOfOtherCells) {
   scene.deformed = scenes::waved(scene.mesh.rest_positions, 3.0, 11);
   const std::vector<Volume> sources = sources_of(scene);
   WarpOptions plain = on_device();
-  plain.skip.interior_cells = false;
+  plain.expert.skip.interior_cells = false;
   Series lean(sources, scene, on_device()), all(sources, scene, plain);
   for (int step = 0; step < 3; ++step) {
     const Counts by_class = lean.step(shaken(scene, step));

@@ -17,7 +17,7 @@ WarpOptions options_of(Backend backend, const Region& region) {
   WarpOptions options;
   options.backend = backend;
   options.region = region;
-  options.skip.unchanged_tets = backend == Backend::cuda;
+  options.expert.skip.unchanged_tets = backend == Backend::cuda;
   return options;
 }
 

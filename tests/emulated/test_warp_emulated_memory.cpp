@@ -19,7 +19,7 @@ TEST(EmulatedMemory, IsWithinThePlan) {
   const Volume source = scenes::wavy_volume(grid, PixelType::uint8);
   for (const bool has_classes : {true, false}) {
     WarpOptions options{.output_grid = grid, .backend = Backend::cuda};
-    options.skip.interior_cells = has_classes;
+    options.expert.skip.interior_cells = has_classes;
     const std::size_t before = simt::Device::only().allocated();
     Warper warper(source, mesh, options);
     std::vector<std::uint8_t> output(static_cast<std::size_t>(grid.voxel_count()));

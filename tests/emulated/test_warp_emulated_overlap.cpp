@@ -117,7 +117,7 @@ TEST_F(EmulatedOverlap, AFailedStepIsNotChargedToTheNext) {
   bad.front()[0] = 1e300;
   const StepBuffers buffer(sources, scene.output_grid, Pages::locked);
   WarpOptions anew = options;
-  anew.skip.unchanged_tets = false;
+  anew.expert.skip.unchanged_tets = false;
   anew.stage_times = true;
   Warper warper = make_warper(sources, scene, anew);
   warper.step(steps[0], buffer.target(false));

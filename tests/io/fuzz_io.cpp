@@ -96,13 +96,8 @@ std::vector<std::string> seed_names() {
   return names;
 }
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 void damage_file(const std::string& path, test::Random& random) {
-  std::string bytes = bytes_of(path);
+  std::string bytes = tetwarp::test::bytes_of(path);
   test::damage_bytes(bytes, random);
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }

@@ -15,6 +15,7 @@
 
 #include "io/fclib/fclib_numbers.hpp"
 #include "io/h5/h5_attribute.hpp"
+#include "tests/support/contact_data.hpp"
 #include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {
@@ -67,19 +68,10 @@ constexpr Variant variants[] = {
     {"pyramid_parallel", FrictionLaw::pyramid, AdhesionRule::parallel},
     {"pyramid_restrictive", FrictionLaw::pyramid, AdhesionRule::restrictive}};
 
-std::filesystem::path data_folder() {
-  if (const char* folder = std::getenv("TETWARP_CONTACT_DATA")) return folder;
-#if defined(TETWARP_CONTACT_DATA)
-  return TETWARP_CONTACT_DATA;
-#else
-  return {};
-#endif
-}
-
 std::vector<std::filesystem::path> certified_files() {
   std::vector<std::filesystem::path> files;
-  if (!std::filesystem::is_directory(data_folder())) return files;
-  for (const auto& entry : std::filesystem::directory_iterator(data_folder())) {
+  if (!std::filesystem::is_directory(contact_data_folder())) return files;
+  for (const auto& entry : std::filesystem::directory_iterator(contact_data_folder())) {
     if (entry.path().extension() == ".hdf5") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

@@ -15,21 +15,13 @@
 
 #include "host/contact/problem/matrix.hpp"
 #include "host/reference/contact/contact.hpp"
+#include "tests/support/contact_data.hpp"
 #include "tests/support/contact_files.hpp"
 #include "tests/support/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {
 using samples::vector_of;
-
-std::filesystem::path data_folder() {
-  if (const char* folder = std::getenv("TETWARP_CONTACT_DATA")) return folder;
-#ifdef TETWARP_CONTACT_DATA
-  return TETWARP_CONTACT_DATA;
-#else
-  return {};
-#endif
-}
 
 /// One solution of one file.
 struct Certificate {
@@ -42,7 +34,8 @@ struct Certificate {
 std::vector<Certificate> certificates() {
   std::set<std::filesystem::path> files;
   std::error_code no_folder;
-  for (const auto& entry : std::filesystem::directory_iterator(data_folder(), no_folder)) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::contact_data_folder(), no_folder)) {
     if (entry.path().extension() == ".hdf5") files.insert(entry.path());
   }
   std::vector<Certificate> all;

@@ -1,6 +1,7 @@
 /// @file touch_scenes.hpp
 /// Bodies and surfaces for tests of contact.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -24,6 +25,15 @@ inline Body rigid_capsule(const std::string& name,
                           const Point3& position) {
   Body body = rigid_ball(name, radius, position);
   body.geometry = Shape{CapsuleShape{radius, length}};
+  return body;
+}
+
+/// An elastic ball of radius 0.1 with about 80 triangles.
+inline Body soft_ball(const std::string& name, const Point3& position) {
+  Body body = elastic_box(name, {0.1, 0.1, 0.1}, {3, 3, 3});
+  body.geometry = Shape{EllipsoidShape{{0.1, 0.1, 0.1}}};
+  body.surface = std::int64_t{80};
+  body.pose.position = position;
   return body;
 }
 

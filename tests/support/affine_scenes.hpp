@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/eigen_points.hpp"
 #include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
@@ -17,10 +18,6 @@ inline std::vector<Backend> usable_backends() {
     if (status.usable) usable.push_back(status.backend);
   }
   return usable;
-}
-
-inline Eigen::Vector3d vector_of(const Point3& p) {
-  return {p[0], p[1], p[2]};
 }
 
 inline Point3 centre_of(const Grid& grid) {
@@ -46,14 +43,6 @@ inline scenes::Scene affine_scene(const Grid& source,
 
 inline Eigen::Matrix3d turn(double angle, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
-
-/// Largest difference of samples; infinite between volumes of different sizes.
-inline double largest_difference(const Volume& a, const Volume& b) {
-  const auto x = numbers_of(a), y = numbers_of(b);
-  double largest = x.size() == y.size() ? 0 : INFINITY;
-  for (std::size_t s = 0; s < x.size(); ++s) largest = std::max(largest, std::abs(x[s] - y[s]));
-  return largest;
 }
 
 }  // namespace tetwarp::test

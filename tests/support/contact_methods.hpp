@@ -39,7 +39,7 @@ inline ContactProblem global_problem(std::uint32_t seed, Eigen::Index bodies, do
 
 /// Bodies that A couples, by the outer iteration.
 inline ContactOptions iterated(ContactMethod method = ContactMethod::automatic) {
-  return {.method = method, .tolerance = 1e-8, .coupling = ContactCoupling::iterated};
+  return {.method = method, .tolerance = 1e-8, .expert = {.coupling = ContactCoupling::iterated}};
 }
 
 /// Two problems in global form, with block starts or without, joined without any coupling.

@@ -83,7 +83,8 @@ inline void expect_reference(const ContactProblem& problem,
 /// Expects that the outer iteration solves a problem of coupled bodies, whose residual it bounds.
 inline void expect_iteration(const ContactProblem& problem) {
   const ContactSolution solution = solve_contacts(
-      problem, {.tolerance = 1e-6, .coupling = ContactCoupling::iterated, .relaxation = 0.3});
+      problem,
+      {.tolerance = 1e-6, .expert = {.coupling = ContactCoupling::iterated, .relaxation = 0.3}});
 
   EXPECT_TRUE(solution.converged()) << solution.report.status_reason;
   EXPECT_LE(residual_of(problem, solution).eta, 1e-6);

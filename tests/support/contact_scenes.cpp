@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "host/base/counter_hash.hpp"
+#include "host/base/point3.hpp"
 #include "tests/support/rigid_scene.hpp"
-#include "tests/support/vectors.hpp"
 
 namespace tetwarp::scenes {
 namespace {
@@ -22,8 +22,8 @@ class Dice {
   std::uint64_t counter_;
 };
 
-Vector direction(Dice& dice) {
-  Vector v;
+Point3 direction(Dice& dice) {
+  Point3 v;
   double length = 0;
   do {
     v = {dice.next(), dice.next(), dice.next()};
@@ -131,7 +131,7 @@ ContactProblem sphere_packing(const SpherePacking& choice) {
   constexpr double radius = 0.05;
   Dice dice(choice.seed);
   RigidScene scene;
-  std::vector<Vector> centers;
+  std::vector<Point3> centers;
   const std::int64_t n = choice.edge;
   for (std::int64_t k = 0; k < n; ++k) {
     for (std::int64_t j = 0; j < n; ++j) {
@@ -150,7 +150,7 @@ ContactProblem sphere_packing(const SpherePacking& choice) {
   }
   const auto count = static_cast<std::int64_t>(centers.size());
   for (std::int64_t a = 0; a < count; ++a) {
-    const Vector& x = centers[static_cast<std::size_t>(a)];
+    const Point3& x = centers[static_cast<std::size_t>(a)];
     const auto is_kept = [&] { return (dice.next() + 1) / 2 < choice.kept; };
     if (a < n * n && is_kept()) {
       scene.add_contact(a, {0, 0, -radius}, -1, {}, {0, 0, 1},
@@ -158,13 +158,13 @@ ContactProblem sphere_packing(const SpherePacking& choice) {
     }
     // Neighbors are among the spheres of this layer and the one below.
     for (std::int64_t b = std::max<std::int64_t>(a - 2 * n * n, 0); b < a; ++b) {
-      const Vector& y = centers[static_cast<std::size_t>(b)];
-      Vector normal = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+      const Point3& y = centers[static_cast<std::size_t>(b)];
+      Point3 normal = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
       const double distance =
           std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
       if (distance > 2.15 * radius || !is_kept()) continue;
       for (double& component : normal) component /= distance;
-      Vector arm = normal;
+      Point3 arm = normal;
       for (double& component : arm) component *= radius;
       scene.add_contact(a, {-arm[0], -arm[1], -arm[2]}, b, arm, normal,
                         choice.gaps * std::max(distance - 2 * radius, -1e-3) / choice.time_step,
@@ -191,7 +191,7 @@ ContactProblem jam(const Jam& choice) {
     const auto step = static_cast<std::int64_t>((1 + dice.next()) / 2 * 1.4 *
                                                 static_cast<double>(choice.bodies - 1));
     const bool is_free = step + 1 < choice.bodies;  // else it touches the world
-    const Vector arm_a = direction(dice), arm_b = direction(dice);
+    const Point3 arm_a = direction(dice), arm_b = direction(dice);
     scene.add_contact(a, arm_a, is_free ? (a + 1 + step) % choice.bodies : -1, arm_b,
                       direction(dice), 0, choice.friction);
   }

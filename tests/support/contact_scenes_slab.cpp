@@ -6,28 +6,20 @@
 #include <utility>
 
 #include "host/base/counter_hash.hpp"
+#include "host/base/point3.hpp"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/vectors.hpp"
 
 namespace tetwarp::scenes {
 namespace {
-Vector minus(const Point3& a, const Point3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// Gradients of the four barycentric coordinates; the volume.
 struct Element {
-  std::array<Vector, 4> gradient;
+  std::array<Point3, 4> gradient;
   double volume;
 };
 
 Element element_of(const Point3& a, const Point3& b, const Point3& c, const Point3& d) {
-  const Vector x = minus(b, a), y = minus(c, a), z = minus(d, a);
+  const Point3 x = minus(b, a), y = minus(c, a), z = minus(d, a);
   const double six = dot(x, cross(y, z));
   Element element;
   element.gradient[1] = cross(y, z);
@@ -70,8 +62,8 @@ ContactProblem elastic_slab(const ElasticSlab& choice) {
     for (std::size_t p = 0; p < 4; ++p) {
       mass[node(p)] += choice.density * e.volume / 4;
       for (std::size_t q = 0; q < 4; ++q) {
-        const Vector& g = e.gradient[p];
-        const Vector& f = e.gradient[q];
+        const Point3& g = e.gradient[p];
+        const Point3& f = e.gradient[q];
         for (std::size_t i = 0; i < 3; ++i) {
           for (std::size_t j = 0; j < 3; ++j) {
             const double block =

@@ -25,7 +25,7 @@ ContactProblem tray(const Tray& choice) {
   for (std::int64_t j = 0; j < choice.edge; ++j) {
     for (std::int64_t i = 0; i < choice.edge; ++i) {
       const std::int64_t sphere = 1 + i + choice.edge * j;
-      const Vector foot = {radius * static_cast<double>(2 * i + 1) - width / 2,
+      const Point3 foot = {radius * static_cast<double>(2 * i + 1) - width / 2,
                            radius * static_cast<double>(2 * j + 1) - width / 2, 0};
       scene.add_contact(sphere, {0, 0, -radius}, 0, foot, {0, 0, 1}, 0, choice.friction);
       if (i > 0) {

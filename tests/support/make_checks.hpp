@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/eigen_points.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace tetwarp::make_checks {
@@ -27,9 +28,7 @@ using PixelTypes = ::testing::Types<std::uint8_t,
                                     float,
                                     double>;
 
-inline Eigen::Vector3d vector_of(const Point3& x) {
-  return {x[0], x[1], x[2]};
-}
+using test::vector_of;
 
 /// Volumes of the tetrahedra, positive where the nodes are in right-handed order.
 inline std::vector<double> tet_volumes(const Mesh& mesh, const std::vector<Point3>& positions) {

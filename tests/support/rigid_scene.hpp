@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/point3.hpp"
 #include "tests/support/contact_scenes.hpp"
-#include "tests/support/vectors.hpp"
 
 namespace tetwarp::scenes {
 
 /// Rigid bodies and contacts between them, one after the other.
 class RigidScene {
  public:
-  void add_body(double mass, double inertia, const Vector& impulse) {
+  void add_body(double mass, double inertia, const Point3& impulse) {
     const auto first = static_cast<std::int64_t>(problem_.load.size());
     for (std::int64_t a = 0; a < 6; ++a) {
       mass_.push_back({first + a, first + a, a < 3 ? mass : inertia});
@@ -24,18 +24,18 @@ class RigidScene {
   }
   /// Contact of body a (arm from its center) with body b, or with the world: b = -1.
   void add_contact(std::int64_t a,
-                   const Vector& arm_a,
+                   const Point3& arm_a,
                    std::int64_t b,
-                   const Vector& arm_b,
-                   const Vector& normal,
+                   const Point3& arm_b,
+                   const Point3& normal,
                    double gap_speed,
                    double friction) {
-    const Vector helper = std::abs(normal[0]) < 0.8 ? Vector{1, 0, 0} : Vector{0, 1, 0};
-    Vector tangent = cross(normal, helper);
+    const Point3 helper = std::abs(normal[0]) < 0.8 ? Point3{1, 0, 0} : Point3{0, 1, 0};
+    Point3 tangent = cross(normal, helper);
     const double length =
         std::sqrt(tangent[0] * tangent[0] + tangent[1] * tangent[1] + tangent[2] * tangent[2]);
     for (double& x : tangent) x /= length;
-    for (const Vector& axis : {normal, tangent, cross(normal, tangent)}) {
+    for (const Point3& axis : {normal, tangent, cross(normal, tangent)}) {
       add_row(a, axis, arm_a, 1);
       if (b >= 0) add_row(b, axis, arm_b, -1);
       ++row_;
@@ -54,8 +54,8 @@ class RigidScene {
   }
 
  private:
-  void add_row(std::int64_t body, const Vector& axis, const Vector& arm, double sign) {
-    const Vector turn = cross(arm, axis);
+  void add_row(std::int64_t body, const Point3& axis, const Point3& arm, double sign) {
+    const Point3 turn = cross(arm, axis);
     for (std::size_t a = 0; a < 3; ++a) {
       const std::int64_t dof = 6 * body + static_cast<std::int64_t>(a);
       jacobian_.push_back({row_, dof, sign * axis[a]});

@@ -111,7 +111,7 @@ inline std::vector<Bits> steps_one_by_one(const std::vector<Volume>& sources,
                                           const scenes::Scene& scene,
                                           WarpOptions options,
                                           const Steps& steps) {
-  options.skip.unchanged_tets = false;
+  options.expert.skip.unchanged_tets = false;
   const StepBuffers buffer(sources, scene.output_grid, Pages::pageable);
   Warper warper = make_warper(sources, scene, options);
   std::vector<Bits> results;

@@ -1,7 +1,9 @@
 /// @file warp_run.hpp
 /// One call that warps and keeps all outputs.
 #pragma once
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -56,6 +58,19 @@ inline std::vector<double> numbers_of(const Volume& volume) {
     for (const T sample : volume.samples<T>()) numbers.push_back(static_cast<double>(sample));
   });
   return numbers;
+}
+
+/// Largest difference of samples; infinite between volumes of different sizes.
+inline double largest_difference(const Volume& a, const Volume& b) {
+  const auto x = numbers_of(a), y = numbers_of(b);
+  double largest = x.size() == y.size() ? 0 : INFINITY;
+  for (std::size_t s = 0; s < x.size(); ++s) largest = std::max(largest, std::abs(x[s] - y[s]));
+  return largest;
+}
+
+/// Whether samples, mask and owners have the same bits.
+inline bool is_same(const Warped& a, const Warped& b) {
+  return a.volume.data == b.volume.data && a.mask == b.mask && a.owner == b.owner;
 }
 
 /// A mesh that covers every voxel of the grid, hull included: half a voxel beyond the outer ones.

@@ -88,10 +88,6 @@ InBlocks run_blocks(const Volume& source,
   return all;
 }
 
-bool is_same(const Warped& a, const Warped& b) {
-  return a.volume.data == b.volume.data && a.mask == b.mask && a.owner == b.owner;
-}
-
 /// Small blocks of float32.
 const BlockLimits small{.max_voxels = 16 * 16 * 16};
 
@@ -151,7 +147,7 @@ TEST_P(Blocks, CulledByMasksHaveTheBitsOfTheWhole) {
     options.backend = GetParam();
     const Warped whole = run_warp(source, scene, GetParam(), options);
     const BlockLimits large{.max_voxels = 32 * 32 * 32};
-    options.skip.grid_point_masks = true;
+    options.expert.skip.grid_point_masks = true;
 
     const InBlocks blocks = run_blocks(source, scene, options, large);
 
@@ -168,7 +164,7 @@ TEST(BlockPlanner, CountsTheMasks) {
   };
   const double without = bytes();
 
-  options.skip.grid_point_masks = true;
+  options.expert.skip.grid_point_masks = true;
 
   EXPECT_GT(bytes(), without);
 }

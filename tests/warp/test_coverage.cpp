@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/point3.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/each_scene.hpp"
 #include "tests/support/warp_run.hpp"
@@ -142,19 +143,6 @@ TEST(CoverageFolds, CellsInsideSeveralTetrahedraGoToTheLowest) {
   }
 }
 
-double length(const Point3& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-Point3 minus(const Point3& a, const Point3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Point3 cross(const Point3& a, const Point3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Point3& a, const Point3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// Smallest angle between two faces of a tetrahedron [degree].
 double smallest_dihedral_angle(const std::array<Point3, 4>& tet) {
   double smallest = 180;
@@ -163,7 +151,7 @@ double smallest_dihedral_angle(const std::array<Point3, 4>& tet) {
       const std::size_t c = a == 0 ? (b == 1 ? 2 : 1) : 0, d = 6 - a - b - c;
       const Point3 edge = minus(tet[b], tet[a]);
       const Point3 p = cross(edge, minus(tet[c], tet[a])), q = cross(edge, minus(tet[d], tet[a]));
-      const double angle = std::atan2(length(cross(p, q)), dot(p, q));
+      const double angle = std::atan2(norm(cross(p, q)), dot(p, q));
       smallest = std::min(smallest, angle * 180 / 3.14159265358979323846);
     }
   }

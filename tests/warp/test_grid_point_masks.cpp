@@ -22,7 +22,7 @@ class GridPointMasksOption : public ::testing::TestWithParam<Backend> {
 
   static WarpOptions with_masks(WarpOptions options = {}) {
     options.backend = GetParam();
-    options.skip.grid_point_masks = true;
+    options.expert.skip.grid_point_masks = true;
     return options;
   }
   static WarpOptions without_masks(WarpOptions options = {}) {
@@ -92,8 +92,8 @@ TEST_P(GridPointMasksOption, GivesTheVerdictsThatAreSwitchedOn) {
   for (const bool rejects : {true, false}) {
     for (const bool accepts : {true, false}) {
       WarpOptions options;
-      options.skip.rejected_cells = rejects;
-      options.skip.accepted_cells = accepts;
+      options.expert.skip.rejected_cells = rejects;
+      options.expert.skip.accepted_cells = accepts;
       const Counts counts = expect_same(scene, with_masks(options), without_masks(options));
 
       EXPECT_EQ(counts.pairs_rejected > 0, rejects);
@@ -157,7 +157,7 @@ TEST_P(GridPointMasksOption, HasATimeOfItsOwn) {
     return warper.report().timings.mask;
   };
   WarpOptions unused = with_masks();
-  unused.skip.rejected_cells = unused.skip.accepted_cells = false;
+  unused.expert.skip.rejected_cells = unused.expert.skip.accepted_cells = false;
 
   EXPECT_GT(seconds(with_masks()), 0);
   EXPECT_EQ(seconds(without_masks()), 0);

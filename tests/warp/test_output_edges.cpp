@@ -54,7 +54,7 @@ TEST(OutputEdges, AreKeptWhereverTheOutputBegins) {
         WarpOptions options;
         options.backend = Backend::cpu;
         options.threads = 2;
-        options.skip.unchanged_tets = false;  // the memory is another each time
+        options.expert.skip.unchanged_tets = false;  // the memory is another each time
         Warper warper(volume, mesh, options);
         const Volume expected = warper.step(deformed);
         for (std::size_t start = 0; start < 64; start += 5) {

@@ -37,9 +37,9 @@ std::int64_t expect_same(const std::vector<Volume>& sources,
                          WarpOptions options = {}) {
   options.backend = Backend::cpu;
   options.threads = 1;
-  options.skip.constant_cells = true;
+  options.expert.skip.constant_cells = true;
   Series on(sources, scene, options);
-  options.skip.constant_cells = false;
+  options.expert.skip.constant_cells = false;
   Series off(sources, scene, options);
   const Counts filled = on.step(scene.deformed), sampled = off.step(scene.deformed);
   EXPECT_TRUE(on.has_bits_of(off)) << scene.name << ' ' << name_of(sources.front().type);
@@ -155,7 +155,7 @@ TEST(SkipConstant, WorksWithUpdates) {
   for (const Filter filter : {Filter::linear, Filter::cubic, Filter::labels}) {
     WarpOptions options{.filter = filter, .backend = Backend::cpu};
     Series on(sources, scene, options);
-    options.skip.constant_cells = options.skip.unchanged_tets = false;
+    options.expert.skip.constant_cells = options.expert.skip.unchanged_tets = false;
     Series off(sources, scene, options);
     Counts sum;
     for (const auto& positions : partial_motions(scene, 79)) {

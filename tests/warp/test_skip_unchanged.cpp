@@ -36,7 +36,7 @@ class SkipUnchanged : public ::testing::TestWithParam<UpdateCase> {
     options.backend = backend();
     options.threads = 1;
     options.count_folded = true;
-    options.skip.unchanged_tets = updates;
+    options.expert.skip.unchanged_tets = updates;
     return options;
   }
 

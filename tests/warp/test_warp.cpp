@@ -93,7 +93,7 @@ TEST_P(WarpTypes, WholeVoxelMovesKeepEveryBit) {
           const Volume source = copies ? bits : quieted(bits);
           WarpOptions options;
           options.filter = filter_of(GetParam());
-          options.skip.copied_voxels = copies;
+          options.expert.skip.copied_voxels = copies;
           options.backend = Backend::cpu;
           const WarpResult result =
               warp(source, mesh, moved(grid, mesh.rest_positions, voxels), options);

@@ -122,7 +122,7 @@ TEST(WarpAntialias, HasTheSameBitsWhateverIsLeftOut) {
     options.quantities = {Quantity::components, Quantity::vector};
     options.backend = backend;
     Series updated(sources, scene, options);
-    options.skip = {false, false, false, false, false, false, false};
+    options.expert.skip = {false, false, false, false, false, false, false};
     options.threads = 1;
     Series anew(sources, scene, options);
     std::int64_t unchanged = 0;

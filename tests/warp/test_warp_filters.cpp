@@ -102,7 +102,7 @@ TEST_P(WarpFilters, ReturnTheSourceUnderAWholeShift) {
                              grid};
       WarpOptions options{.filter = filter};
       const Warped copied = run(source, scene, options);
-      options.skip.copied_voxels = false;
+      options.expert.skip.copied_voxels = false;
       const Warped sampled = run(source, scene, options);
       options.filter = Filter::nearest;
 

@@ -70,13 +70,6 @@ Volume ramp(double x, double y, double z) {
   return volume;
 }
 
-double largest_difference(const Volume& a, const Volume& b) {
-  const auto x = numbers_of(a), y = numbers_of(b);
-  double largest = x.size() == y.size() ? 0 : INFINITY;
-  for (std::size_t s = 0; s < x.size(); ++s) largest = std::max(largest, std::abs(x[s] - y[s]));
-  return largest;
-}
-
 /// Slopes of the float64 volume are below 1 per voxel; maps that differ from affine ones by less
 /// than four quanta may be taken for them. Found: 1.2e-8 and 3.6e-7.
 TEST_P(WarpHexahedra, AreTheReference) {

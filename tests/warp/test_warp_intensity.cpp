@@ -217,7 +217,7 @@ TEST(WarpIntensity, HasTheSameBitsWhateverIsLeftOut) {
     SCOPED_TRACE(name_of(backend));
     WarpOptions options{.intensity = Intensity::conservative, .backend = backend, .threads = 3};
     Series updated(sources, scene, options);
-    options.skip = {false, false, false, false, false, false, false};
+    options.expert.skip = {false, false, false, false, false, false, false};
     options.threads = 1;
     Series anew(sources, scene, options);
     std::int64_t unchanged = 0;

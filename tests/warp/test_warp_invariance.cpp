@@ -13,10 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-bool is_same(const Warped& a, const Warped& b) {
-  return a.volume.data == b.volume.data && a.mask == b.mask && a.owner == b.owner;
-}
-
 /// Together these scenes take every path of the raster stage.
 const SceneNames raster_scenes = {"aligned", "waved", "tiny", "soup", "overlapping", "other_grid"};
 
@@ -43,9 +39,9 @@ TEST_P(WarpInvariance, AnyNumberOfThreadsGivesTheSameBitsAndCounts) {
 /// 0: all on; 1, 2, 3: one of rejected, accepted, copied off; 4: all off.
 WarpOptions without(int which) {
   WarpOptions options;
-  options.skip.rejected_cells = which != 1 && which != 4;
-  options.skip.accepted_cells = which != 2 && which != 4;
-  options.skip.copied_voxels = which != 3 && which != 4;
+  options.expert.skip.rejected_cells = which != 1 && which != 4;
+  options.expert.skip.accepted_cells = which != 2 && which != 4;
+  options.expert.skip.copied_voxels = which != 3 && which != 4;
   options.outside = Outside::identity;
   return options;
 }

@@ -185,7 +185,7 @@ TEST(WarpRounding, UpdatesReportTheWholeChange) {
     SCOPED_TRACE(name_of(backend));
     WarpOptions options{.intensity = Intensity::conservative, .backend = backend, .threads = 2};
     Series updated(sources, scene, options);
-    options.skip = {false, false, false, false, false, false, false};
+    options.expert.skip = {false, false, false, false, false, false, false};
     Series anew(sources, scene, options);
     std::int64_t unchanged = 0;
     for (const auto& positions : partial_motions(scene, 31)) {

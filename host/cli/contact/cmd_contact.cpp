@@ -165,7 +165,7 @@ void add_contact_command(CLI::App& app, Run& run) {
     if (arguments->energy && arguments->report.empty()) {
       throw CLI::ValidationError("--energy", "needs --report, which it adds to");
     }
-    if (arguments->options.relaxation >= 2) {
+    if (arguments->options.expert.relaxation >= 2) {
       throw CLI::ValidationError("--relaxation", "expected a number below 2");
     }
     run = [arguments] { return run_contact(*arguments); };

@@ -57,13 +57,13 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
       ->type_name("LIMIT");
   add_choice(app, "--solver", options.method, choices_of<ContactMethod>(),
              "solution method [auto]");
-  add_choice(app, "--coupling", options.coupling, choices_of<ContactCoupling>(),
+  add_choice(app, "--coupling", options.expert.coupling, choices_of<ContactCoupling>(),
              "bodies that A couples: condense them onto their contacts, or iterate [auto]");
-  app.add_option("--relaxation", options.relaxation,
+  app.add_option("--relaxation", options.expert.relaxation,
                  "factor of the outer iteration, above 0 and below 2 [0.5]")
       ->check(above_zero())
       ->type_name("W");
-  app.add_option("--inner", options.inner_sweeps, "sweeps per outer iteration [5]")
+  app.add_option("--inner", options.expert.inner_sweeps, "sweeps per outer iteration [5]")
       ->check(at_least(1))
       ->type_name("N");
   app.add_flag_callback(
@@ -103,7 +103,7 @@ void declare_running(CLI::App& app, ContactArguments& arguments) {
   app.add_option("--threads", options.threads, "threads of the cpu back end, 0 for all cores [0]")
       ->check(between(0, max_threads))
       ->type_name("N");
-  declare_skips(app, options.skip);
+  declare_skips(app, options.expert.skip);
   app.add_option("--report", arguments.report, "write residuals, counts and timings as JSON")
       ->type_name("FILE");
   app.add_flag("--modes", arguments.modes,

@@ -52,7 +52,7 @@ VolumeWriteOptions write_options(const WarpArguments& arguments,
                                  const Fingerprint& fingerprint) {
   return {.compress = arguments.compress,
           .background = arguments.warp.background,
-          .skip_background_chunks = arguments.warp.skip.background_chunks,
+          .skip_background_chunks = arguments.warp.expert.skip.background_chunks,
           .fingerprint = fingerprint.text(),
           .scalars = volume.active};
 }

@@ -232,7 +232,7 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
       ->check(between(0, max_threads))
       ->type_name("N");
-  declare_skips(app, warp.skip);
+  declare_skips(app, warp.expert.skip);
   add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
   app.add_flag("--dry-run", arguments.dry_run,

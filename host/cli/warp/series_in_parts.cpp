@@ -45,7 +45,7 @@ Counts join(const VolumeTask& task,
     stop_if_interrupted();
     std::vector<Point3> positions = task.job.mesh.read_step(steps[s].mesh_step);
     const bool is_same_source = s > 0 && steps[s].volume_step == steps[s - 1].volume_step;
-    if (arguments.warp.skip.unchanged_steps && is_same_source && positions == last) {
+    if (arguments.warp.expert.skip.unchanged_steps && is_same_source && positions == last) {
       writer.repeat_step(steps[s].time);
     } else {
       writer.copy_step(steps[s].time, files[s]);

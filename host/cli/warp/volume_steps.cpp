@@ -58,7 +58,7 @@ void VolumeSteps::reset() {
 }
 
 bool VolumeSteps::equals_last(const VolumeStep& step) const {
-  return task_.arguments.warp.skip.unchanged_steps && last_ != nullptr &&
+  return task_.arguments.warp.expert.skip.unchanged_steps && last_ != nullptr &&
          step.positions == last_->positions;
 }
 

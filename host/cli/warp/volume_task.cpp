@@ -20,7 +20,7 @@ VolumeTask::VolumeTask(const WarpArguments& arguments,
       region(arguments.warp.region.value_or(Region{{0, 0, 0}, volume.output_grid.dims})),
       options(warp_options(arguments, job, volume)),
       outputs(arrays_written(volume, arguments)) {
-  if (!is_whole) options.skip.unchanged_tets = false;  // a block is not computed twice
+  if (!is_whole) options.expert.skip.unchanged_tets = false;  // a block is not computed twice
 }
 
 }  // namespace tetwarp::cli

@@ -19,7 +19,7 @@ namespace tetwarp {
 
 /// Sweeps per outer iteration. If no two contacts share a body (one color), one sweep solves them.
 inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& island) {
-  return island.color_end - island.color_begin > 2 ? options.inner_sweeps : 1;
+  return island.color_end - island.color_begin > 2 ? options.expert.inner_sweeps : 1;
 }
 
 /// With D the diagonal blocks of A and q = J v_f + w, one outer iteration is
@@ -145,7 +145,7 @@ class BlockJacobi {
     while (outcome.outer_iterations < task_.max_iterations) {
       std::swap(before_, now_);
       pipeline_.use_body_velocity(now_);
-      pipeline_.step_bodies(before_, static_cast<T>(task_.options.relaxation));
+      pipeline_.step_bodies(before_, static_cast<T>(task_.options.expert.relaxation));
       for (int sweep = 0; sweep < inner_sweeps_; ++sweep) pipeline_.sweep({});
       outcome.sweeps += inner_sweeps_;
       ++outcome.outer_iterations;

@@ -60,7 +60,7 @@ class ResidualEstimator {
     exec.resize(memory.constants, numbers_.constants.size);
     exec.for_each("contact/setup", numbers_.constants.size,
                   LowerBlocksBody{numbers_.bodies.pairs.pair_start, numbers_.constants,
-                                  options_.relaxation, view_of(memory.constants)});
+                                  options_.expert.relaxation, view_of(memory.constants)});
   }
 
   /// Solves for the velocities without impulses, which set the scale of the residual. If they
@@ -250,7 +250,7 @@ class ResidualEstimator {
                                           numbers_.bodies.jacobian, numbers_.bodies.response,
                                           view_of(std::as_const(memory_.impulse))})
             .value[0] /
-        options_.relaxation;
+        options_.expert.relaxation;
     return sums;
   }
 

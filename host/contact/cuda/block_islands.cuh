@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_block.cuh"

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/vector_view.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/cuda/device_memory.cuh"
-#include "host/contact/problem/vectors.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "kernels/contact/contact_grid.cuh"
 #include "kernels/contact/contact_numbers.hpp"

@@ -74,7 +74,7 @@ class NewtonPolish {
         contacts_(make_contacts(problem, delassus)),
         map_(contacts_, options.law, options.rule),
         system_(problem, delassus),
-        has_only_contacts_(problem.row_blocks.empty()) {
+        has_only_contacts_(problem.expert.row_blocks.empty()) {
     const VectorXd none = VectorXd::Zero(delassus.free_velocity().size());
     free_energy_ = map_.value(none, delassus.free_velocity(), 1).squaredNorm();
   }

@@ -107,7 +107,7 @@ class Tableau {
 
 bool FrictionPivoting::applies(const ContactProblem& problem, const ContactOptions& options) {
   return options.law == FrictionLaw::pyramid && problem.contact_count() <= max_contacts &&
-         problem.row_blocks.empty() &&
+         problem.expert.row_blocks.empty() &&
          (options.rule == AdhesionRule::parallel || problem.adhesion.empty());
 }
 

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "host/contact/problem/matrix.hpp"
+#include "kernels/contact/check_limits.hpp"
 
 namespace tetwarp {
 
@@ -110,8 +111,6 @@ class SymmetryCheck {
   }
 
  private:
-  static constexpr double tolerance = 1e-9;
-
   double value(std::int64_t e) const { return system_.value[static_cast<std::size_t>(e)]; }
   std::size_t column(std::int64_t e) const {
     return static_cast<std::size_t>(system_.column[static_cast<std::size_t>(e)]);
@@ -135,7 +134,7 @@ class SymmetryCheck {
   }
 
   void compare(std::size_t row, std::size_t c, double entry, double mirrored) {
-    if (std::abs(entry - mirrored) > tolerance * std::abs(entry)) {
+    if (std::abs(entry - mirrored) > asymmetry.host * std::abs(entry)) {
       check_difference(row, c, entry, mirrored);
     }
   }
@@ -143,7 +142,7 @@ class SymmetryCheck {
   /// Throws unless the difference is small relative to the largest entry of either row.
   void check_difference(std::size_t row, std::size_t c, double entry, double mirrored) {
     const double difference = std::abs(entry - mirrored);
-    if (difference <= tolerance * std::max(largest_of(row), largest_of(c))) return;
+    if (difference <= asymmetry.host * std::max(largest_of(row), largest_of(c))) return;
     const std::string r = std::to_string(row);
     const std::string k = std::to_string(c);
     throw ContactProblemError("system", "(" + r + ", " + k + "): " + text_of(entry) + ", but (" +
@@ -155,10 +154,6 @@ class SymmetryCheck {
   std::vector<std::int64_t> cursor_;  ///< of each row: the first entry not compared so far
   std::vector<double> largest_;       ///< of each row: the largest |entry|; -1: not computed so far
 };
-
-/// Relative. In a singular block, rounding leaves pivots of about this size.
-constexpr double smallest_pivot = 1e-14;
-constexpr int largest_dense_block = 12;
 
 bool is_positive(const SparseMatrix& system, std::int32_t begin, int size) {
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
@@ -175,7 +170,7 @@ bool is_positive(const SparseMatrix& system, std::int32_t begin, int size) {
   if (factor.info() != Eigen::Success) return false;
   for (int i = 0; i < size; ++i) {
     const double pivot = factor.matrixLLT()(i, i) * factor.matrixLLT()(i, i);
-    if (!(pivot > smallest_pivot * block(i, i))) return false;
+    if (!(pivot > smallest_pivot.host * block(i, i))) return false;
   }
   return true;
 }
@@ -184,7 +179,7 @@ bool is_large_block_positive(const SparseMatrix& system, std::int32_t begin, int
   const Eigen::SparseMatrix<double> block = make_eigen(system).block(begin, begin, size, size);
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(block);
   return factor.info() == Eigen::Success &&
-         factor.vectorD().minCoeff() > smallest_pivot * block.diagonal().maxCoeff();
+         factor.vectorD().minCoeff() > smallest_pivot.host * block.diagonal().maxCoeff();
 }
 }  // namespace
 

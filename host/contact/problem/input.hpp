@@ -3,7 +3,8 @@
 #pragma once
 #include <tetwarp/contact_problem.hpp>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "kernels/contact/contact_fill.hpp"
 
 namespace tetwarp {
@@ -25,9 +26,9 @@ inline ContactInput input_of(const ContactProblem& problem) {
   in.tangential_stiffness = view_of(adhesion.tangential_stiffness);
   in.intensity = view_of(adhesion.intensity);
   in.gap = view_of(adhesion.gap);
-  in.row_kind = view_of(problem.row_blocks.kind);
-  in.row_contact = view_of(problem.row_blocks.contact);
-  in.torsion = view_of(problem.row_blocks.torsion);
+  in.row_kind = view_of(problem.expert.row_blocks.kind);
+  in.row_contact = view_of(problem.expert.row_blocks.contact);
+  in.torsion = view_of(problem.expert.row_blocks.torsion);
   return in;
 }
 

@@ -76,8 +76,8 @@ std::vector<MeasuredContact> measured_contacts(const ContactProblem& problem) {
     contact.friction = constant.friction;
     if (!is_contact(constant.kind)) {
       contact.kind = constant.kind;
-      contact.contact = problem.row_blocks.contact[c];
-      contact.torsion = problem.row_blocks.torsion[c];
+      contact.contact = problem.expert.row_blocks.contact[c];
+      contact.torsion = problem.expert.row_blocks.torsion[c];
     }
     if (constant.kind != ContactKind::adhesive) continue;
     contact.stiffness << constant.normal_spring, constant.tangent_spring, constant.tangent_spring;

@@ -12,6 +12,7 @@
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/matrix.hpp"
 #include "host/contact/problem/row_checks.hpp"
+#include "kernels/contact/check_limits.hpp"
 
 namespace tetwarp {
 namespace {
@@ -128,16 +129,16 @@ double entry_of(const SparseMatrix& matrix, std::size_t row, std::size_t column)
 }
 
 /// Refuses entries that no positive semidefinite matrix has: |W_ij + W_ji| / 2 beyond the geometric
-/// mean of W_ii and W_jj, by more than the 10 % that asymmetric recorded matrices may have.
+/// mean of W_ii and W_jj, by more than semidefinite_slack.
 void check_semidefinite(const SparseMatrix& delassus, std::span<const double> diagonal) {
-  constexpr double slack = 1.1, rounding = 1e-9;
   const double largest = diagonal.empty() ? 0 : *std::max_element(diagonal.begin(), diagonal.end());
   for (std::size_t row = 0; row < diagonal.size(); ++row) {
     for (std::int64_t e = delassus.row_start[row]; e < delassus.row_start[row + 1]; ++e) {
       const auto entry = static_cast<std::size_t>(e);
       const auto column = static_cast<std::size_t>(delassus.column[entry]);
       const double bound =
-          slack * std::sqrt(diagonal[row]) * std::sqrt(diagonal[column]) + rounding * largest;
+          semidefinite_slack.host * std::sqrt(diagonal[row]) * std::sqrt(diagonal[column]) +
+          semidefinite_rounding.host * largest;
       if (std::abs(delassus.value[entry]) <= bound) continue;
       const double mean = (entry_of(delassus, row, column) + entry_of(delassus, column, row)) / 2;
       if (std::abs(mean) <= bound) continue;
@@ -175,8 +176,7 @@ void check_local(const ContactProblem& problem) {
       }
     }
   }
-  // A diagonal of W is a square of rows over a mass; masses may differ by twelve digits.
-  check_diagonal(problem, "delassus", diagonal, 1e-30);
+  check_diagonal(problem, "delassus", diagonal, delassus_rounding.host);
   check_semidefinite(problem.delassus, diagonal);
 }
 
@@ -213,7 +213,7 @@ void check_global(const ContactProblem& problem) {
           std::max(sizes[row], std::abs(problem.jacobian.value[static_cast<std::size_t>(e)]));
     }
   }
-  check_diagonal(problem, "jacobian", sizes, 1e-14);
+  check_diagonal(problem, "jacobian", sizes, jacobian_rounding.host);
 }
 
 void check_adhesion(const ContactProblem& problem) {

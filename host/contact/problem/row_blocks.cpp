@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/problem/checks.hpp"
-#include "host/contact/problem/vectors.hpp"
 #include "kernels/contact/contact_law.hpp"
 
 namespace tetwarp {
@@ -57,12 +58,12 @@ void check_length(const char* name, std::size_t size, std::size_t expected) {
 }  // namespace
 
 bool is_contact_block(const ContactProblem& problem, std::size_t c) {
-  return problem.row_blocks.empty() ||
-         is_contact(static_cast<ContactKind>(problem.row_blocks.kind[c]));
+  return problem.expert.row_blocks.empty() ||
+         is_contact(static_cast<ContactKind>(problem.expert.row_blocks.kind[c]));
 }
 
 bool has_rolling(const ContactProblem& problem) {
-  const std::vector<std::uint8_t>& kinds = problem.row_blocks.kind;
+  const std::vector<std::uint8_t>& kinds = problem.expert.row_blocks.kind;
   return std::find(kinds.begin(), kinds.end(), rolling_kind) != kinds.end();
 }
 
@@ -85,8 +86,9 @@ BlockProblem::BlockProblem(const ContactProblem& given, const ContactOptions& op
   blocks_.bilateral = {};
   blocks_.rolling = {};
   const std::size_t contacts = given.friction.size();
-  blocks_.row_blocks = {std::vector<std::uint8_t>(contacts, contact_kind),
-                        std::vector<std::int32_t>(contacts, -1), std::vector<double>(contacts, 0)};
+  blocks_.expert.row_blocks = {std::vector<std::uint8_t>(contacts, contact_kind),
+                               std::vector<std::int32_t>(contacts, -1),
+                               std::vector<double>(contacts, 0)};
   if (given.jacobian.empty() && !given.is_local()) {
     blocks_.jacobian = {0, given.dof_count(), {0}, {}, {}};
   }
@@ -201,9 +203,9 @@ void BlockProblem::end_block(std::uint8_t kind,
     ++blocks_.jacobian.rows;
   }
   blocks_.friction.push_back(friction);
-  blocks_.row_blocks.kind.push_back(kind);
-  blocks_.row_blocks.contact.push_back(contact);
-  blocks_.row_blocks.torsion.push_back(torsion);
+  blocks_.expert.row_blocks.kind.push_back(kind);
+  blocks_.expert.row_blocks.contact.push_back(contact);
+  blocks_.expert.row_blocks.torsion.push_back(torsion);
 }
 
 void BlockProblem::add_groups() {

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/matrix.hpp"
-#include "host/contact/problem/vectors.hpp"
 
 namespace tetwarp {
 namespace {
@@ -189,8 +190,8 @@ void check_ellipses(const ContactProblem& problem) {
 }  // namespace
 
 void check_row_blocks(const ContactProblem& problem) {
-  if (!problem.row_blocks.empty()) {
-    throw ContactProblemError("row_blocks", ": not empty; it belongs to the solver");
+  if (!problem.expert.row_blocks.empty()) {
+    throw ContactProblemError("expert.row_blocks", ": not empty; it belongs to the solver");
   }
   check_ellipses(problem);
   check_bilateral(problem);

@@ -5,7 +5,7 @@
 
 namespace tetwarp {
 
-/// Checks of `second_friction`, `bilateral`, `rolling` and `row_blocks`, for check_problem().
+/// Checks of `second_friction`, `bilateral`, `rolling` and `expert`, for check_problem().
 /// @pre the other members have passed their checks
 /// @throws ContactProblemError
 void check_row_blocks(const ContactProblem& problem);

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
+#include "kernels/contact/check_limits.hpp"
 
 namespace tetwarp {
 
 std::vector<double> normal_offsets(const ContactProblem& problem) {
-  constexpr double rounding = 1e-9;  // of the largest gap
   const AdhesionState& adhesion = problem.adhesion;
   if (problem.is_local() || adhesion.gap.empty() || !(adhesion.time_step > 0)) return {};
   double scale = 0;
@@ -23,7 +24,7 @@ std::vector<double> normal_offsets(const ContactProblem& problem) {
   for (std::size_t c = 0; c < offsets.size(); ++c) {
     const double difference =
         adhesion.gap[3 * c] - adhesion.time_step * problem.velocity_offset[3 * c];
-    if (std::abs(difference) <= rounding * scale) continue;
+    if (std::abs(difference) <= spring_rounding.host * scale) continue;
     offsets[c] = difference / adhesion.time_step;
     is_any = true;
   }

@@ -38,7 +38,7 @@ CondensedProblem::CondensedProblem(const ContactProblem& problem, SolveBudget* b
 void CondensedProblem::update(const ContactProblem& problem) {
   load_ = Eigen::Map<const VectorXd>(problem.load.data(), static_cast<Index>(problem.load.size()));
   local_.friction = problem.friction;
-  local_.row_blocks = problem.row_blocks;
+  local_.expert.row_blocks = problem.expert.row_blocks;
   local_.adhesion = problem.adhesion;
   local_.impulse_guess = problem.impulse_guess;
   local_.free_velocity = problem.velocity_offset;

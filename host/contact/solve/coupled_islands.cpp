@@ -70,7 +70,8 @@ void CoupledIslands::clear() {
 void CoupledIslands::begin(const ContactProblem& problem, const ContactStructure& structure) {
   const std::vector<ContactIsland>& islands = structure.islands;
   const auto is_coupled = [](const ContactIsland& island) { return island.is_coupled; };
-  if (!options_.skip.constant_systems || std::none_of(islands.begin(), islands.end(), is_coupled)) {
+  if (!options_.expert.skip.constant_systems ||
+      std::none_of(islands.begin(), islands.end(), is_coupled)) {
     return;
   }
   const auto is_same = [](const std::vector<double>& a, const std::vector<double>& b) {
@@ -91,10 +92,11 @@ CoupledIslands::Route CoupledIslands::planned_route(const ContactIsland& island)
   constexpr std::int64_t max_iterations = 1000;
   const std::int64_t budget = iteration_budget(options_, island);
   if (options_.method == ContactMethod::mass_splitting ||
-      options_.method == ContactMethod::newton || options_.coupling == ContactCoupling::condensed) {
+      options_.method == ContactMethod::newton ||
+      options_.expert.coupling == ContactCoupling::condensed) {
     return {0, true};
   }
-  if (options_.coupling == ContactCoupling::iterated) return {budget, false};
+  if (options_.expert.coupling == ContactCoupling::iterated) return {budget, false};
   if (options_.method != ContactMethod::automatic) return {0, true};
   const std::int64_t rows = 3 * island.contact_count();
   if (rows * (island.dof_end - island.dof_begin) < cheap) return {0, true};

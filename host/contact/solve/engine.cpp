@@ -65,8 +65,9 @@ EngineResult ContactEngine::solve(const ContactProblem& given,
 
 void ContactEngine::set_structure(const ContactProblem& problem) {
   if (pattern_ && has_pattern(problem, *pattern_)) return;
-  islands_.set_structure(device_ != nullptr ? make_structure(problem, options_.skip, *device_)
-                                            : make_structure(problem, options_.skip));
+  islands_.set_structure(device_ != nullptr
+                             ? make_structure(problem, options_.expert.skip, *device_)
+                             : make_structure(problem, options_.expert.skip));
   pattern_ = pattern_of(problem);
   coupled_.clear();
 }

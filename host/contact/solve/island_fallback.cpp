@@ -55,7 +55,7 @@ bool IslandFallback::searches_before_sweeps() {
 
 /// Whether the island has blocks of rows that are no contacts.
 bool IslandFallback::has_other_blocks() const {
-  if (attempt_.problem().row_blocks.empty()) return false;
+  if (attempt_.problem().expert.row_blocks.empty()) return false;
   for (std::int64_t s = attempt_.island().slot_begin; s < attempt_.island().slot_end; ++s) {
     const std::int32_t c = attempt_.structure().contact_of_slot[index_of(s)];
     if (!is_contact_block(attempt_.problem(), index_of(c))) return true;

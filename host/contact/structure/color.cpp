@@ -6,7 +6,8 @@
 #include <bit>
 #include <unordered_map>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 
 namespace tetwarp {
 namespace {

@@ -79,7 +79,7 @@ ContactProblem make_island_problem(const ContactProblem& problem,
   ContactProblem part;
   part.friction = pick(problem.friction, 1);
   part.impulse_guess = pick(problem.impulse_guess, 3);
-  part.row_blocks = make_part(problem.row_blocks, contacts, count);
+  part.expert.row_blocks = make_part(problem.expert.row_blocks, contacts, count);
   const AdhesionState& adhesion = problem.adhesion;
   part.adhesion = {adhesion.time_step,
                    pick(adhesion.area, 1),

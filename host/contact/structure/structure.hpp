@@ -7,7 +7,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/structure/islands.hpp"
 #include "kernels/contact/contact_indices.hpp"
 #include "kernels/contact/contact_numbers.hpp"

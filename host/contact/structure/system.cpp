@@ -10,7 +10,8 @@ constexpr std::size_t worth_a_thread = 1024;
 }  // namespace
 
 ContactChoices choices_of(const ContactOptions& options) {
-  return {options.relaxation, options.skip.debonded_springs, options.skip.frictionless_rows};
+  return {options.expert.relaxation, options.expert.skip.debonded_springs,
+          options.expert.skip.frictionless_rows};
 }
 
 void fill_system(const ContactProblem& problem,

@@ -52,7 +52,7 @@ inline MethodPlan plan_of(const ContactOptions& options) {
 }
 
 inline bool freezes_contacts(const ContactOptions& options) {
-  return options.method == ContactMethod::gauss_seidel && options.skip.frozen_contacts;
+  return options.method == ContactMethod::gauss_seidel && options.expert.skip.frozen_contacts;
 }
 
 /// The stop criterion of each island. Half of the allowed error of the whole problem is distributed

@@ -9,7 +9,8 @@ namespace tetwarp {
 namespace {
 
 // Changes are added to a body where the sum of squares of its accelerations with them is less than
-// this share of that without: after an impact it is not.
+// this share of that without. It is near 0 where contact holds a body as before, and 1 or more
+// after an impact.
 constexpr double holding_share = 0.3;
 
 }  // namespace

@@ -2,33 +2,17 @@
 /// Searches bodies by NearestItems, and obstacles by their shapes.
 #include "host/simulate/model/material_finder.hpp"
 
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <variant>
 
 #include "host/base/index_of.hpp"
+#include "host/scene/surface_lattice.hpp"
 #include "host/simulate/model/nearest.hpp"
 #include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {
 namespace {
-
-/// Whether a closed surface winds around x: the solid angles of its triangles sum to 4 pi inside.
-bool encloses(const Surface& surface, const Point3& x) {
-  double angle = 0;
-  for (const auto& triangle : surface.triangles) {
-    const Point3 a = minus(at(surface.points, triangle[0]), x);
-    const Point3 b = minus(at(surface.points, triangle[1]), x);
-    const Point3 c = minus(at(surface.points, triangle[2]), x);
-    const double la = norm(a), lb = norm(b), lc = norm(c);
-    angle += 2 * std::atan2(dot(a, cross(b, c)),
-                            la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-  }
-  return angle > 2 * std::numbers::pi;
-}
-
 Point3 nearest_in_ball(const Point3& centre, double radius, const Point3& x) {
   const double distance = norm(minus(x, centre));
   return distance <= radius ? x : plus(centre, times(radius / distance, minus(x, centre)));
@@ -45,7 +29,7 @@ struct MaterialFinder::Search {
 
   /// The point of a solid nearest to a point, in its own frame; inside, the point itself.
   Point3 nearest_of_solid(const Point3& x) const {
-    if (surface->triangles.empty() || encloses(*surface, x)) return x;
+    if (surface->triangles.empty() || winding_number(*surface, x) > 0.5) return x;
     const NearestPoint<3> found = triangles->find(x);
     Point3 nearest{0, 0, 0};
     for (std::size_t c = 0; c < 3; ++c) {

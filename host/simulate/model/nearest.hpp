@@ -1,12 +1,12 @@
 /// @file nearest.hpp
-/// The nearest triangle or tetrahedron to a point, by a uniform grid of their boxes.
+/// The nearest triangle or tetrahedron to a point.
 #pragma once
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "host/base/point3.hpp"
+#include "host/simulate/model/box_tree.hpp"
 
 namespace tetwarp {
 
@@ -25,7 +25,7 @@ NearestPoint<3> nearest_on(const std::array<Point3, 3>& triangle, const Point3& 
 NearestPoint<4> nearest_on(const std::array<Point3, 4>& tet, const Point3& point);
 
 /// Searches a fixed list of triangles (3 corners) or tetrahedra (4). Of equally near items the one
-/// of the lowest index is found. Needs memory for about four entries per item.
+/// of the lowest index is found.
 template <std::size_t corners>
 class NearestItems {
  public:
@@ -36,22 +36,9 @@ class NearestItems {
   NearestPoint<corners> find(const Point3& point) const;
 
  private:
-  std::array<Point3, corners> corners_of(std::int32_t item) const;
-  std::array<std::int64_t, 3> cell_of(const Point3& point) const;
-  /// Visits the items of all cells at Chebyshev distance `shell` from `centre`.
-  template <class Visit>
-  void visit_shell(const std::array<std::int64_t, 3>& centre,
-                   std::int64_t shell,
-                   Visit visit) const;
-
   std::vector<Point3> points_;
   std::vector<Cell> items_;
-  std::vector<Bounds> boxes_;  ///< of the items
-  Bounds bounds_;
-  double edge_ = 1;  ///< of the cubes of the grid
-  std::array<std::int64_t, 3> dims_{1, 1, 1};
-  std::vector<std::int64_t> first_;    ///< [cells + 1]
-  std::vector<std::int32_t> entries_;  ///< items by cell, ascending
+  BoxTree tree_;  ///< of the items
 };
 
 extern template class NearestItems<3>;

@@ -32,7 +32,7 @@ std::unique_ptr<ContactStep> MovingBodies::make_contact() {
   of.backend = scene_.backend;
   of.threads = scene_.threads;
   of.device = scene_.options.device;
-  of.skip = scene_.options.skip;
+  of.skip = scene_.options.expert.skip;
   of.sleeps = scene_.scene.solver.sleeping;
   of.factors = rest_factors_;
   if (count_.has_progress()) of.progress = [this] { return count_.goes_on(0); };
@@ -58,7 +58,7 @@ std::unique_ptr<BodyStepper> MovingBodies::make_stepper() {
   of.threads = scene_.threads;
   of.device = scene_.options.device;
   of.float32_solve = scene_.options.float32_solve;
-  of.skip = scene_.options.skip;
+  of.skip = scene_.options.expert.skip;
   of.factors = rest_factors_;
   if (count_.has_progress()) {
     of.progress = [this](std::int64_t iterations) { return count_.goes_on(iterations); };

@@ -64,7 +64,7 @@ struct ContactSystem::State {
 bool ContactSystem::State::iterates_two_levels() const {
   return options.solver.backend != Backend::reference &&
          options.solver.method == ContactMethod::automatic &&
-         options.solver.coupling == ContactCoupling::automatic &&
+         options.solver.expert.coupling == ContactCoupling::automatic &&
          options.solver.measure == ContactMeasure::eta;
 }
 

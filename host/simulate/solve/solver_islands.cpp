@@ -13,10 +13,10 @@ namespace tetwarp {
 SolverIslands::SolverIslands(const ContactOptions& options) : options_(options), of_few_(options) {}
 
 /// Newton's method follows where sweeps have not converged. One factorization for many contacts
-/// takes as long as hundreds of sweeps, for few contacts as long as about ten.
+/// takes as long as hundreds of sweeps, for few contacts as long as about ten: squeezed bodies with
+/// fewer than 200 contacts, which Newton's method solves, keep the lower limit of sweeps.
 ContactSolver& SolverIslands::solver_for(std::size_t contact_count) {
   constexpr std::size_t many_contacts = 200;
-  constexpr std::int64_t many_sweeps = 5000;
   if (contact_count < many_contacts || options_.max_sweeps >= many_sweeps) return of_few_;
   if (of_many_ == nullptr) {
     ContactOptions options = options_;

@@ -13,10 +13,10 @@
 #include "host/base/parallel.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/surface_lattice.hpp"
+#include "host/simulate/model/box_tree.hpp"
 #include "host/simulate/start/inset_places.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
-#include "host/simulate/surfaces/triangle_tree.hpp"
 
 namespace tetwarp {
 namespace {
@@ -94,7 +94,7 @@ class StartSearch {
 
   /// Finds edges that cross triangles, and keeps the first such pair of each two bodies.
   void find_crossings(int threads) {
-    const TriangleTree tree(places_.vertices, surfaces_.triangles);
+    const BoxTree tree(boxes_of(places_.vertices, surfaces_.triangles));
     constexpr std::int64_t edges_per_task = 1024;
     const auto count = static_cast<std::int64_t>(surfaces_.edges.size());
     std::vector<std::vector<std::array<std::int32_t, 2>>> crossings(
@@ -120,7 +120,7 @@ class StartSearch {
   }
 
   template <class Visit>
-  void visit_crossed(const TriangleTree& tree, std::int32_t edge, const Visit& visit) const {
+  void visit_crossed(const BoxTree& tree, std::int32_t edge, const Visit& visit) const {
     const auto& ends = at(surfaces_.edges, edge);
     const std::int32_t from = ends[0], to = ends[1];
     Bounds box;

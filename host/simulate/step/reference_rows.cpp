@@ -4,15 +4,12 @@
 
 #include <utility>
 
+#include "host/base/vector_view.hpp"
+
 namespace tetwarp {
 namespace {
 
 using Index = Eigen::Index;
-
-template <class T>
-View<const T> view_of(const std::vector<T>& own) {
-  return {own.data(), static_cast<std::int64_t>(own.size())};
-}
 
 /// Blocks of a body of the model, in ascending order.
 std::vector<std::int32_t> blocks_of(const Model& model, std::size_t body) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/simulate/step/element_lists.hpp"
 #include "kernels/body/point_spring.hpp"
 
@@ -261,9 +262,6 @@ SystemPattern make_system_pattern(const Model& model) {
 }
 
 SystemRows rows_of(const SystemPattern& pattern) {
-  const auto view_of = []<class T>(const std::vector<T>& own) {
-    return View<const T>{own.data(), static_cast<std::int64_t>(own.size())};
-  };
   SystemRows rows;
   rows.count = pattern.row_count;
   rows.unknown_count = pattern.unknown_count;

@@ -2,136 +2,74 @@
 /// Weights of the nearest points of two features.
 #include "host/simulate/surfaces/near_pair.hpp"
 
+#include <tuple>
+#include <type_traits>
+
 #include "host/base/point3.hpp"
-#include "kernels/collide/pair_distance.hpp"
+#include "host/base/vector_view.hpp"
+#include "kernels/collide/pair_touch.hpp"
 
 namespace tetwarp {
 namespace {
 
-class PairPoints {
- public:
-  PairPoints(const TouchingPair& pair,
-             const CollisionSurfaces& surfaces,
-             const SurfacePlaces& places)
-      : pair_(pair), surfaces_(surfaces), places_(places) {}
-
-  NearPair make() {
-    switch (pair_.kind) {
-      case PairKind::vertex_face:
-        vertex_face();
-        break;
-      case PairKind::edge_edge:
-        edge_edge();
-        break;
-      case PairKind::vertex_edge:
-        vertex_edge();
-        break;
-      case PairKind::vertex_vertex:
-        add(pair_.a, 1);
-        add(pair_.b, -1);
-        radius_a_ = at(surfaces_.vertex_radius, pair_.a);
-        radius_b_ = at(surfaces_.vertex_radius, pair_.b);
-        set_bodies(pair_.a, pair_.b);
-        break;
-      case PairKind::vertex_plane:
-        vertex_plane();
-        return result_;
-    }
-    finish();
-    return result_;
-  }
-
- private:
-  const Point3& place(std::int32_t vertex) const { return at(places_.vertices, vertex); }
-  const double* place_of(std::int32_t vertex) const { return place(vertex).data(); }
-
-  /// Adds a vertex of a with the weight, or one of b with minus the weight.
-  void add(std::int32_t vertex, double weight) {
-    const bool is_of_a = count_ < of_a_;
-    Point3& point = is_of_a ? point_a_ : point_b_;
-    point = plus(point, times(is_of_a ? weight : -weight, place(vertex)));
-    result_.vertex[count_] = vertex;
-    result_.weight[count_++] = weight;
-  }
-
-  void set_bodies(std::int32_t vertex_a, std::int32_t vertex_b) {
-    result_.bodies = {at(surfaces_.vertex_body, vertex_a), at(surfaces_.vertex_body, vertex_b)};
-  }
-
-  void vertex_face() {
-    const auto& corners = at(surfaces_.triangles, pair_.b);
-    double weight[3];
-    vertex_face_distance(place_of(pair_.a), place_of(corners[0]), place_of(corners[1]),
-                         place_of(corners[2]), weight);
-    add(pair_.a, 1);
-    for (std::size_t c = 0; c < 3; ++c) add(corners[c], -weight[c]);
-    radius_a_ = at(surfaces_.vertex_radius, pair_.a);
-    set_bodies(pair_.a, corners[0]);
-  }
-
-  void edge_edge() {
-    const auto& a = at(surfaces_.edges, pair_.a);
-    const auto& b = at(surfaces_.edges, pair_.b);
-    double s = 0, t = 0;
-    edge_edge_distance(place_of(a[0]), place_of(a[1]), place_of(b[0]), place_of(b[1]), &s, &t);
-    of_a_ = 2;
-    add(a[0], 1 - s);
-    add(a[1], s);
-    add(b[0], t - 1);
-    add(b[1], -t);
-    radius_a_ = at(surfaces_.edge_radius, pair_.a);
-    radius_b_ = at(surfaces_.edge_radius, pair_.b);
-    set_bodies(a[0], b[0]);
-  }
-
-  void vertex_edge() {
-    const auto& b = at(surfaces_.edges, pair_.b);
-    double s = 0, t = 0;
-    const double* const vertex = place_of(pair_.a);
-    edge_edge_distance(vertex, vertex, place_of(b[0]), place_of(b[1]), &s, &t);
-    add(pair_.a, 1);
-    add(b[0], t - 1);
-    add(b[1], -t);
-    radius_a_ = at(surfaces_.vertex_radius, pair_.a);
-    radius_b_ = at(surfaces_.edge_radius, pair_.b);
-    set_bodies(pair_.a, b[0]);
-  }
-
-  void vertex_plane() {
-    const PlanePlace& plane = at(places_.planes, pair_.b);
-    add(pair_.a, 1);
-    radius_a_ = at(surfaces_.vertex_radius, pair_.a);
-    const double height = dot(plane.normal, minus(place(pair_.a), plane.point));
-    result_.normal = plane.normal;
-    result_.distance = height - radius_a_;
-    result_.place = minus(place(pair_.a), times((height + radius_a_) / 2, plane.normal));
-    result_.bodies = {at(surfaces_.vertex_body, pair_.a), at(surfaces_.plane_body, pair_.b)};
-  }
-
-  void finish() {
-    const Point3 apart = minus(point_a_, point_b_);
-    const double length = norm(apart);
-    result_.normal = unit(apart);
-    result_.distance = length - radius_a_ - radius_b_;
-    result_.place = plus(point_b_, times((length - radius_a_ + radius_b_) / 2, result_.normal));
-  }
-
-  const TouchingPair& pair_;
-  const CollisionSurfaces& surfaces_;
-  const SurfacePlaces& places_;
-  NearPair result_;
-  std::size_t count_ = 0;
-  std::size_t of_a_ = 1;  ///< vertices of a
-  Point3 point_a_{0, 0, 0}, point_b_{0, 0, 0};
-  double radius_a_ = 0, radius_b_ = 0;
-};
+/// The features as pair_touch.hpp reads them.
+CollideView features_of(const CollisionSurfaces& surfaces) {
+  const auto corners = [](const auto& list) {
+    using Item = typename std::decay_t<decltype(list)>::value_type;
+    const auto count = static_cast<std::int64_t>(std::tuple_size_v<Item> * list.size());
+    return View<const std::int32_t>{list.empty() ? nullptr : list.front().data(), count};
+  };
+  CollideView features{};
+  features.vertex_body = view_of(surfaces.vertex_body);
+  features.vertex_radius = view_of(surfaces.vertex_radius);
+  features.edges = corners(surfaces.edges);
+  features.edge_radius = view_of(surfaces.edge_radius);
+  features.triangles = corners(surfaces.triangles);
+  features.plane_body = view_of(surfaces.plane_body);
+  return features;
+}
 
 }  // namespace
 
 NearPair near_pair(const TouchingPair& pair,
                    const CollisionSurfaces& surfaces,
                    const SurfacePlaces& places) {
-  return PairPoints(pair, surfaces, places).make();
+  const CollideView features = features_of(surfaces);
+  const FeaturePair of{pair.kind, pair.a, pair.b};
+  const PairVertices own = vertices_of(features, of);
+  NearPair near;
+  bodies_of(features, of, near.bodies.data());
+  double radii[2];
+  radii_of(features, of, radii);
+  if (pair.kind == PairKind::vertex_plane) {
+    const Point3& vertex = at(places.vertices, pair.a);
+    const PlanePlace& plane = at(places.planes, pair.b);
+    const double height = dot(plane.normal, minus(vertex, plane.point));
+    near.vertex[0] = pair.a;
+    near.weight[0] = 1;
+    near.normal = plane.normal;
+    near.distance = height - radii[0];
+    near.place = minus(vertex, times((height + radii[0]) / 2, plane.normal));
+    return near;
+  }
+  const double* x[4] = {};
+  for (int k = 0; k < own.count; ++k) x[k] = at(places.vertices, own.vertex[k]).data();
+  axis_distance(pair.kind, x, near.weight.data());
+  Point3 point[2] = {};
+  for (int k = 0; k < own.count; ++k) {
+    const auto n = static_cast<std::size_t>(k);
+    const bool is_of_b = k >= own.count_a;
+    near.vertex[n] = own.vertex[k];
+    point[is_of_b] =
+        plus(point[is_of_b], times(near.weight[n], at(places.vertices, own.vertex[k])));
+    if (is_of_b) near.weight[n] = -near.weight[n];
+  }
+  const Point3 apart = minus(point[0], point[1]);
+  const double length = norm(apart);
+  near.normal = unit(apart);
+  near.distance = length - radii[0] - radii[1];
+  near.place = plus(point[1], times((length - radii[0] + radii[1]) / 2, near.normal));
+  return near;
 }
 
 bool crosses(

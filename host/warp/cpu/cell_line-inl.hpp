@@ -119,7 +119,7 @@ class CellLine {
   void write_outside(int begin, int end, const CellBox& first, int j, int k, std::int64_t row) {
     owners_.write_uncovered(begin, end, row);
     if (!job_.outside.use_source) return;
-    ScalarRows<T>::write_outside(row_job_, first.corner, begin, end, j, k);
+    write_scalar_outside(pixel_type_of<T>(), row_job_, first.corner, begin, end, j, k);
   }
 
   const RasterJob<T>& job_;

@@ -22,17 +22,16 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 
 /// Rasters pieces of the line grid: takes numbers from `next` until `end`.
-/// @param job     RasterJob of the pixel type
+/// @param job     a RasterJob of the pixel type
 /// @param counts  of these pieces, added
 void raster_pieces(PixelType type,
-                   const void* job,
+                   const RasterGeometry& job,
                    std::atomic<std::int64_t>& next,
                    std::int64_t end,
                    RasterCounts& counts) {
   with_pixel_type(type, [&]<class T>(T) {
-    const RasterJob<T>& typed = *static_cast<const RasterJob<T>*>(job);
-    const LineGrid lines(typed.frame);
-    CellLine<T> line(typed, lines.longest(), counts);
+    const LineGrid lines(job.frame);
+    CellLine<T> line(static_cast<const RasterJob<T>&>(job), lines.longest(), counts);
     for (std::int64_t piece = next++; piece < end; piece = next++) {
       const auto [first, past] = lines.piece(piece);
       for (std::int64_t l = first; l < past; ++l) {
@@ -52,8 +51,10 @@ namespace tetwarp {
 
 HWY_EXPORT(raster_pieces);
 
-template <class T>
-void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
+void cell_raster(CpuExec& exec,
+                 PixelType type,
+                 const RasterGeometry& job,
+                 const ProgressPart& progress) {
   const CpuExec::Clock clock(exec, "warp/raster");
   const std::int64_t pieces = LineGrid(job.frame).piece_count();
   const std::int64_t batches = progress.is_requested() ? 32 : 1;
@@ -64,7 +65,7 @@ void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& pro
     std::mutex adding;
     parallel_tasks(exec.threads(), exec.threads(), [&](std::int64_t) {
       RasterCounts counts = {0, 0, 0, 0};
-      HWY_DYNAMIC_DISPATCH(raster_pieces)(pixel_type_of<T>(), &job, next, end, counts);
+      HWY_DYNAMIC_DISPATCH(raster_pieces)(type, job, next, end, counts);
       const std::lock_guard lock(adding);
       sum = {sum.covered + counts.covered, sum.inside_tests + counts.inside_tests,
              sum.exact_tests + counts.exact_tests, sum.copied + counts.copied};
@@ -73,17 +74,6 @@ void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& pro
   }
   if (job.counts != nullptr) *job.counts = sum;
 }
-
-template void cell_raster(CpuExec&, const RasterJob<std::uint8_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<std::int8_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<std::uint16_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<std::int16_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<std::uint32_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<std::int32_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<std::uint64_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<std::int64_t>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<float>&, const ProgressPart&);
-template void cell_raster(CpuExec&, const RasterJob<double>&, const ProgressPart&);
 
 }  // namespace tetwarp
 #endif  // HWY_ONCE

@@ -7,6 +7,12 @@
 
 namespace tetwarp {
 
+/// cell_raster() below, of a RasterJob of pixel type `type`.
+void cell_raster(CpuExec& exec,
+                 PixelType type,
+                 const RasterGeometry& job,
+                 const ProgressPart& progress);
+
 /// Writes every voxel of the output once. The same bits as the body of cell_raster.hpp, for any
 /// vector width (Highway selects it at run time) and any number of threads.
 ///
@@ -15,6 +21,8 @@ namespace tetwarp {
 /// @param progress  called between batches of cell lines
 /// @throws Cancelled when `progress` returns false
 template <class T>
-void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& progress);
+void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
+  cell_raster(exec, pixel_type_of<T>(), job, progress);
+}
 
 }  // namespace tetwarp

@@ -16,21 +16,20 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Defined for every pixel type in row_label_cpu.cpp.
-template <class T>
-struct LabelRows {
-  /// Writes the voxels of row (j, k) with the labels of label_at().
-  /// @param job    its volume is the row, from voxel 0 of the line's cell 0 on
-  /// @param shape  of the job's source
-  /// @param runs   sorted by cell, none of RowKind::copied; their order within a cell is changed
-  static void write(const RasterJob<T>& job,
-                    const SourceShape& shape,
-                    const RowSource* sources,
-                    RowRun* runs,
-                    int count,
-                    int j,
-                    int k);
-};
+/// Writes the voxels of row (j, k) with the labels of label_at().
+/// @param type   of pixels, an integer
+/// @param job    a RasterJob of this type; its volume is the row, from voxel 0 of the line's cell 0
+///               on
+/// @param shape  of the job's source
+/// @param runs   sorted by cell, none of RowKind::copied; their order within a cell is changed
+void write_label_row(PixelType type,
+                     const RasterGeometry& job,
+                     const SourceShape& shape,
+                     const RowSource* sources,
+                     RowRun* runs,
+                     int count,
+                     int j,
+                     int k);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tetwarp

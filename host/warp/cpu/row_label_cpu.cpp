@@ -11,6 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "host/base/pixel_dispatch.hpp"
 #include "host/warp/cpu/row_label-inl.hpp"
 #include "host/warp/cpu/row_label_writer-inl.hpp"
 #include "host/warp/cpu/row_scalar.hpp"
@@ -29,62 +30,66 @@ bool is_vectored(const SourceShape& shape, const RowSource& source) {
          (sizeof(ArithmeticOf<T>) == 8 || source.kind() != RowKind::alone);
 }
 
+/// write_label_row() of one pixel type.
 template <class T>
-void LabelRows<T>::write(const RasterJob<T>& job,
-                         const SourceShape& shape,
-                         const RowSource* sources,
-                         RowRun* runs,
-                         int count,
-                         int j,
-                         int k) {
-  if constexpr (!std::is_floating_point_v<T>) {
-    LabelWriter<T> writer(job, shape);
-    RowTaps<false> inner;
-    RowTaps<true> rim;
-    for (RowRun *run = runs, *past = run; run < runs + count; run = past) {
-      RowKind kind = RowKind::inner;
-      RowRun* unit = run;  // runs of the cell in vectors; they are moved to the front
-      for (; past < runs + count && past->cell == run->cell; ++past) {
-        const RowSource& source = sources[past->source];
-        if (!is_vectored<T>(shape, source)) {
-          ScalarRows<T>::write(job, source.map(), past->bits, j, k, cell_edge * past->cell);
-        } else if constexpr (sizeof(ArithmeticOf<T>) == 8) {
-          writer.add_wide(source, *past, j, k);
-        } else {
-          kind = std::max(kind, source.kind());
-          std::swap(*unit++, *past);
-        }
-      }
-      const int unit_count = static_cast<int>(unit - run);
-      if constexpr (sizeof(ArithmeticOf<T>) == 4) {
-        if (unit_count == 0) continue;
-        if (kind == RowKind::inner) {
-          writer.add_units(sources, run, unit_count, j, k, inner);
-        } else {
-          writer.add_units(sources, run, unit_count, j, k, rim);
-        }
+void write_row(const RasterJob<T>& job,
+               const SourceShape& shape,
+               const RowSource* sources,
+               RowRun* runs,
+               int count,
+               int j,
+               int k) {
+  LabelWriter<T> writer(job, shape);
+  RowTaps<false> inner;
+  RowTaps<true> rim;
+  for (RowRun *run = runs, *past = run; run < runs + count; run = past) {
+    RowKind kind = RowKind::inner;
+    RowRun* unit = run;  // runs of the cell in vectors; they are moved to the front
+    for (; past < runs + count && past->cell == run->cell; ++past) {
+      const RowSource& source = sources[past->source];
+      if (!is_vectored<T>(shape, source)) {
+        write_scalar_run(pixel_type_of<T>(), job, source.map(), past->bits, j, k,
+                         cell_edge * past->cell);
+      } else if constexpr (sizeof(ArithmeticOf<T>) == 8) {
+        writer.add_wide(source, *past, j, k);
+      } else {
+        kind = std::max(kind, source.kind());
+        std::swap(*unit++, *past);
       }
     }
+    const int unit_count = static_cast<int>(unit - run);
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
-      writer.flush(inner);
-      writer.flush(rim);
-    } else {
-      writer.flush_wide();
+      if (unit_count == 0) continue;
+      if (kind == RowKind::inner) {
+        writer.add_units(sources, run, unit_count, j, k, inner);
+      } else {
+        writer.add_units(sources, run, unit_count, j, k, rim);
+      }
     }
-    writer.finish();
   }
+  if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+    writer.flush(inner);
+    writer.flush(rim);
+  } else {
+    writer.flush_wide();
+  }
+  writer.finish();
 }
 
-template struct LabelRows<std::uint8_t>;
-template struct LabelRows<std::int8_t>;
-template struct LabelRows<std::uint16_t>;
-template struct LabelRows<std::int16_t>;
-template struct LabelRows<std::uint32_t>;
-template struct LabelRows<std::int32_t>;
-template struct LabelRows<std::uint64_t>;
-template struct LabelRows<std::int64_t>;
-template struct LabelRows<float>;
-template struct LabelRows<double>;
+void write_label_row(PixelType type,
+                     const RasterGeometry& job,
+                     const SourceShape& shape,
+                     const RowSource* sources,
+                     RowRun* runs,
+                     int count,
+                     int j,
+                     int k) {
+  with_pixel_type(type, [&]<class T>(T) {
+    if constexpr (!std::is_floating_point_v<T>) {
+      write_row(static_cast<const RasterJob<T>&>(job), shape, sources, runs, count, j, k);
+    }
+  });
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tetwarp

@@ -62,7 +62,7 @@ class RowSampler {
  private:
   /// Writes the runs that have a transform; moves the others to the front. @returns their number
   int write_transformed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
-    TransformRows<T>::write(job_, shape_, sources, runs, count, j, k);
+    write_transform_row(pixel_type_of<T>(), job_, shape_, sources, runs, count, j, k);
     const auto is_transformed = [&](const RowRun& run) {
       return has_transform(job_, sources[run.source].tet());
     };
@@ -94,7 +94,7 @@ class RowSampler {
   }
 
   void write_filtered(const RowSource* sources, RowRun* runs, int count, int j, int k) {
-    int label_count = 0;  // runs to write by LabelRows; they are moved to the front
+    int label_count = 0;  // runs to write by write_label_row(); they are moved to the front
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
       const int cell_row = cell_edge * runs[r].cell;
@@ -104,11 +104,12 @@ class RowSampler {
       } else if (job_.filter == Filter::labels) {
         runs[label_count++] = runs[r];
       } else {
-        ScalarRows<T>::write(job_, source.map(), runs[r].bits, j, k, cell_row);
+        write_scalar_run(pixel_type_of<T>(), job_, source.map(), runs[r].bits, j, k, cell_row);
       }
     }
     copier_.flush();
-    if (label_count > 0) LabelRows<T>::write(job_, shape_, sources, runs, label_count, j, k);
+    if (label_count > 0)
+      write_label_row(pixel_type_of<T>(), job_, shape_, sources, runs, label_count, j, k);
   }
 
   static bool moves_alike(const RowSource& a, const RowSource& b) {

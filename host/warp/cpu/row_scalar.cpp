@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "host/base/pixel_dispatch.hpp"
 #include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
@@ -195,10 +196,10 @@ void write_filtered(
   const auto map = make_source_map<double>(job.source, start, linear);
   for_voxels(bits, [&](int i) { sample_one(job, map, i, j, k, row); });
 }
-}  // namespace
 
+/// write_scalar_run() of one pixel type.
 template <class T>
-void ScalarRows<T>::write(
+void write_run(
     const RasterJob<T>& job, const RowMap& map, unsigned bits, int j, int k, std::int64_t row) {
   if (has_transform(job, map.tet)) {
     for_voxels(bits, [&](int i) {
@@ -214,30 +215,34 @@ void ScalarRows<T>::write(
     write_filtered(job, map, bits, j, k, row);
   }
 }
+}  // namespace
 
-template <class T>
-void ScalarRows<T>::write_outside(
-    const RasterJob<T>& job, const int* first, int begin, int end, int j, int k) {
-  for (int voxel = begin; voxel < end; ++voxel) {
-    const int i = voxel % cell_edge;
-    const int corner[3] = {first[0] + voxel - i, first[1], first[2]};
-    if (has_outside_transform(job)) {
-      store_transformed_outside(job, {corner, i, j, k, voxel});
-    } else {
-      store_outside<true>(job, {corner, i, j, k, voxel});
-    }
-  }
+void write_scalar_run(PixelType type,
+                      const RasterGeometry& job,
+                      const RowMap& map,
+                      unsigned bits,
+                      int j,
+                      int k,
+                      std::int64_t row) {
+  with_pixel_type(type, [&]<class T>(T) {
+    write_run(static_cast<const RasterJob<T>&>(job), map, bits, j, k, row);
+  });
 }
 
-template struct ScalarRows<std::uint8_t>;
-template struct ScalarRows<std::int8_t>;
-template struct ScalarRows<std::uint16_t>;
-template struct ScalarRows<std::int16_t>;
-template struct ScalarRows<std::uint32_t>;
-template struct ScalarRows<std::int32_t>;
-template struct ScalarRows<std::uint64_t>;
-template struct ScalarRows<std::int64_t>;
-template struct ScalarRows<float>;
-template struct ScalarRows<double>;
+void write_scalar_outside(
+    PixelType type, const RasterGeometry& job, const int* first, int begin, int end, int j, int k) {
+  with_pixel_type(type, [&]<class T>(T) {
+    const auto& typed = static_cast<const RasterJob<T>&>(job);
+    for (int voxel = begin; voxel < end; ++voxel) {
+      const int i = voxel % cell_edge;
+      const int corner[3] = {first[0] + voxel - i, first[1], first[2]};
+      if (has_outside_transform(job)) {
+        store_transformed_outside(typed, {corner, i, j, k, voxel});
+      } else {
+        store_outside<true>(typed, {corner, i, j, k, voxel});
+      }
+    }
+  });
+}
 
 }  // namespace tetwarp

@@ -19,21 +19,23 @@ struct RowMap {
   const std::int32_t* whole;
 };
 
-/// Defined for every pixel type.
-template <class T>
-struct ScalarRows {
-  /// Writes the voxels `bits` of row (j, k) of a cell, which the map's tetrahedron owns: by its
-  /// rule, else by the map of its hexahedron, else by the job's filter. With nearest and linear the
-  /// map must then be affine and the pixel type one with float32 arithmetic.
-  /// @param row  of voxel (0, j, k) of the cell in the output
-  static void write(
-      const RasterJob<T>& job, const RowMap& map, unsigned bits, int j, int k, std::int64_t row);
+/// Writes the voxels `bits` of row (j, k) of a cell, which the map's tetrahedron owns: by its
+/// rule, else by the map of its hexahedron, else by the job's filter. With nearest and linear the
+/// map must then be affine and the pixel type one with float32 arithmetic.
+/// @param job  a RasterJob of pixel type `type`
+/// @param row  of voxel (0, j, k) of the cell in the output
+void write_scalar_run(PixelType type,
+                      const RasterGeometry& job,
+                      const RowMap& map,
+                      unsigned bits,
+                      int j,
+                      int k,
+                      std::int64_t row);
 
-  /// Writes voxels [begin, end) of row (j, k) of a line of cells, which no tetrahedron covers.
-  /// @param job    its volume is the row, from voxel 0 on
-  /// @param first  first voxel of the line's first cell
-  static void write_outside(
-      const RasterJob<T>& job, const int* first, int begin, int end, int j, int k);
-};
+/// Writes voxels [begin, end) of row (j, k) of a line of cells, which no tetrahedron covers.
+/// @param job    a RasterJob of pixel type `type`; its volume is the row, from voxel 0 on
+/// @param first  first voxel of the line's first cell
+void write_scalar_outside(
+    PixelType type, const RasterGeometry& job, const int* first, int begin, int end, int j, int k);
 
 }  // namespace tetwarp

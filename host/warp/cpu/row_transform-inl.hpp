@@ -16,22 +16,21 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Defined for every pixel type in row_transform_cpu.cpp, a file of its own because the code for
-/// all pixel types and instruction sets takes long to compile.
-template <class T>
-struct TransformRows {
-  /// Writes the runs of row (j, k) whose tetrahedra have a transform, with the bits of
-  /// store_transformed_voxel(); leaves out the others.
-  /// @param job    its volume is the row, from voxel 0 of the line's cell 0 on
-  /// @param shape  of the job's source
-  static void write(const RasterJob<T>& job,
-                    const SourceShape& shape,
-                    const RowSource* sources,
-                    const RowRun* runs,
-                    int count,
-                    int j,
-                    int k);
-};
+/// Writes the runs of row (j, k) whose tetrahedra have a transform, with the bits of
+/// store_transformed_voxel(); leaves out the others, and all of pixel types that can_blend
+/// excludes. Defined in row_transform_cpu.cpp, a file of its own because the code for all pixel
+/// types and instruction sets takes long to compile.
+/// @param job    a RasterJob of pixel type `type`; its volume is the row, from voxel 0 of the
+///               line's cell 0 on
+/// @param shape  of the job's source
+void write_transform_row(PixelType type,
+                         const RasterGeometry& job,
+                         const SourceShape& shape,
+                         const RowSource* sources,
+                         const RowRun* runs,
+                         int count,
+                         int j,
+                         int k);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tetwarp

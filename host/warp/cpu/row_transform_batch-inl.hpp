@@ -49,7 +49,7 @@ HWY_INLINE void store_block(const double* values, double scale, int count, T* ou
 template <class T>
 class TransformBatch {
  public:
-  /// @param job    as in TransformRows
+  /// @param job    as in write_transform_row()
   /// @param shape  of the job's source
   TransformBatch(const RasterJob<T>& job, const SourceShape& shape)
       : job_(job), shape_(shape), nearest_(job.filter == Filter::nearest) {}

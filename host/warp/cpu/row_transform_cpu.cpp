@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "host/base/pixel_dispatch.hpp"
 #include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_transform-inl.hpp"
 #include "host/warp/cpu/row_transform_batch-inl.hpp"
@@ -16,42 +17,46 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
+/// write_transform_row() of one pixel type.
 template <class T>
-void TransformRows<T>::write(const RasterJob<T>& job,
-                             const SourceShape& shape,
-                             const RowSource* sources,
-                             const RowRun* runs,
-                             int count,
-                             int j,
-                             int k) {
-  if constexpr (can_blend<T>) {
-    const double voxels = static_cast<double>(shape.dims[0]) * shape.dims[1] * shape.dims[2];
-    const bool is_vectored =
-        !is_wide(job.filter) && voxels <= std::numeric_limits<std::int32_t>::max();
-    TransformBatch<T> batch(job, shape);
-    for (const RowRun* run = runs; run < runs + count; ++run) {
-      const RowSource& source = sources[run->source];
-      if (!has_transform(job, source.tet())) continue;
-      if (is_vectored && source.setup().kind != MapKind::trilinear) {
-        batch.add(source, *run, j, k);
-      } else {
-        ScalarRows<T>::write(job, source.map(), run->bits, j, k, cell_edge * run->cell);
-      }
+void write_row(const RasterJob<T>& job,
+               const SourceShape& shape,
+               const RowSource* sources,
+               const RowRun* runs,
+               int count,
+               int j,
+               int k) {
+  const double voxels = static_cast<double>(shape.dims[0]) * shape.dims[1] * shape.dims[2];
+  const bool is_vectored =
+      !is_wide(job.filter) && voxels <= std::numeric_limits<std::int32_t>::max();
+  TransformBatch<T> batch(job, shape);
+  for (const RowRun* run = runs; run < runs + count; ++run) {
+    const RowSource& source = sources[run->source];
+    if (!has_transform(job, source.tet())) continue;
+    if (is_vectored && source.setup().kind != MapKind::trilinear) {
+      batch.add(source, *run, j, k);
+    } else {
+      write_scalar_run(pixel_type_of<T>(), job, source.map(), run->bits, j, k,
+                       cell_edge * run->cell);
     }
-    batch.flush();
   }
+  batch.flush();
 }
 
-template struct TransformRows<std::uint8_t>;
-template struct TransformRows<std::int8_t>;
-template struct TransformRows<std::uint16_t>;
-template struct TransformRows<std::int16_t>;
-template struct TransformRows<std::uint32_t>;
-template struct TransformRows<std::int32_t>;
-template struct TransformRows<std::uint64_t>;
-template struct TransformRows<std::int64_t>;
-template struct TransformRows<float>;
-template struct TransformRows<double>;
+void write_transform_row(PixelType type,
+                         const RasterGeometry& job,
+                         const SourceShape& shape,
+                         const RowSource* sources,
+                         const RowRun* runs,
+                         int count,
+                         int j,
+                         int k) {
+  with_pixel_type(type, [&]<class T>(T) {
+    if constexpr (can_blend<T>) {
+      write_row(static_cast<const RasterJob<T>&>(job), shape, sources, runs, count, j, k);
+    }
+  });
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tetwarp

@@ -40,16 +40,14 @@ class WideRow {
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
       const auto along = hn::Mul(hn::Load(d, map_.step + lane), hn::Set(d, double(i)));
       const auto x = hn::Add(hn::Load(d, map_.line + lane), along);
-      const auto is_in = hn::And(hn::Ge(x, hn::Load(d, map_.low + lane)),
-                                 hn::Le(x, hn::Load(d, map_.high + lane)));
-      inside = inside && hn::AllTrue(d, is_in);
-      const auto near = nearest_ ? hn::Add(x, hn::Set(d, 0.5)) : x;
-      const auto lower = hn::Floor(near), zero = hn::Zero(d), last = hn::Load(d, map_.last + lane);
-      const auto at = hn::Add(hn::Load(d, map_.whole + lane), lower);
-      const auto blends = hn::And(hn::Ge(at, zero), hn::Lt(at, last));
-      hn::Store(hn::IfThenElseZero(blends, hn::Sub(near, lower)), d, fraction + lane);
-      hn::Store(hn::DemoteTo(di, hn::Min(hn::Max(at, zero), last)), di, voxel + lane);
-      hn::Store(hn::DemoteTo(di, hn::IfThenElseZero(blends, hn::Set(d, 1.0))), di, upper + lane);
+      const WideAxisTaps<WideMap::Tag> taps(
+          x, hn::Load(d, map_.whole + lane), hn::Load(d, map_.low + lane),
+          hn::Load(d, map_.high + lane), hn::Load(d, map_.last + lane), nearest_);
+      inside = inside && hn::AllTrue(d, taps.is_inside);
+      hn::Store(taps.fraction, d, fraction + lane);
+      hn::Store(hn::DemoteTo(di, taps.voxel), di, voxel + lane);
+      hn::Store(hn::DemoteTo(di, hn::IfThenElseZero(taps.blends, hn::Set(d, 1.0))), di,
+                upper + lane);
     }
     return inside;
   }
@@ -124,7 +122,7 @@ inline void sample_alone(const RasterJob<T>& job,
                          std::int64_t row) {
   const MapKind kind = source.setup().kind;
   if (kind == MapKind::trilinear || (sizeof(ArithmeticOf<T>) == 4 && kind == MapKind::affine)) {
-    ScalarRows<T>::write(job, source.map(), bits, j, k, row);
+    write_scalar_run(pixel_type_of<T>(), job, source.map(), bits, j, k, row);
   } else {
     sample_wide(job, shape, source, bits, j, k, row);
   }

@@ -62,6 +62,31 @@ struct WideMap {
   alignas(32) double last[4] = {0, 0, 0, 0};  ///< voxel of the source
 };
 
+/// Neighbours of samples along an axis of the source, bit-equal to tap_of(). One sample or one axis
+/// per lane.
+template <class Tag>
+struct WideAxisTaps {
+  using Numbers = hn::Vec<Tag>;
+
+  /// @param x      positions local to `whole`; low, high and last as in WideMap
+  HWY_INLINE WideAxisTaps(
+      Numbers x, Numbers whole, Numbers low, Numbers high, Numbers last, bool nearest) {
+    const Tag d;
+    const auto near = nearest ? hn::Add(x, hn::Set(d, 0.5)) : x;
+    const auto lower = hn::Floor(near), zero = hn::Zero(d);
+    const auto at = hn::Add(whole, lower);
+    is_inside = hn::And(hn::Ge(x, low), hn::Le(x, high));
+    blends = hn::And(hn::Ge(at, zero), hn::Lt(at, last));
+    fraction = hn::IfThenElseZero(blends, hn::Sub(near, lower));
+    voxel = hn::Min(hn::Max(at, zero), last);
+  }
+
+  hn::Mask<Tag> is_inside;
+  hn::Mask<Tag> blends;  ///< the upper neighbour is another voxel than the lower one
+  Numbers fraction;      ///< from the lower neighbour to the upper one
+  Numbers voxel;         ///< lower neighbour
+};
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tetwarp
 HWY_AFTER_NAMESPACE();

@@ -55,16 +55,12 @@ HWY_INLINE void store_wide_taps(const SourceShape& shape,
   auto inside = hn::Eq(hn::Zero(d), hn::Zero(d));
   hn::Vec<WideTag> voxel[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const auto is_in = hn::And(hn::Ge(x.at[axis], hn::Set(d, map.low[axis])),
-                               hn::Le(x.at[axis], hn::Set(d, map.high[axis])));
-    inside = hn::And(inside, is_in);
-    const auto near = nearest ? hn::Add(x.at[axis], hn::Set(d, 0.5)) : x.at[axis];
-    const auto lower = hn::Floor(near), zero = hn::Zero(d), last = hn::Set(d, map.last[axis]);
-    const auto at = hn::Add(hn::Set(d, map.whole[axis]), lower);
-    const auto blends = hn::And(hn::Ge(at, zero), hn::Lt(at, last));
-    const auto fraction = nearest ? zero : hn::IfThenElseZero(blends, hn::Sub(near, lower));
-    hn::StoreU(fraction, d, taps.fraction[axis] + to);
-    voxel[axis] = hn::Min(hn::Max(at, zero), last);
+    const WideAxisTaps<WideTag> along(x.at[axis], hn::Set(d, map.whole[axis]),
+                                      hn::Set(d, map.low[axis]), hn::Set(d, map.high[axis]),
+                                      hn::Set(d, map.last[axis]), nearest);
+    inside = hn::And(inside, along.is_inside);
+    hn::StoreU(nearest ? hn::Zero(d) : along.fraction, d, taps.fraction[axis] + to);
+    voxel[axis] = along.voxel;
   }
   const auto row = hn::Add(hn::Mul(voxel[2], hn::Set(d, double(shape.dims[1]))), voxel[1]);
   const auto offset = hn::Add(hn::Mul(row, hn::Set(d, double(shape.dims[0]))), voxel[0]);

@@ -77,7 +77,7 @@ TEST(Contact, GoesOnBitForBitFromACheckpoint) {
 TEST(Contact, SkipsWorkWithTheSameBits) {
   Simulator skipping(mixed());
   SimulateOptions options;
-  options.skip = {.rotations = false, .blocks = false, .pairs = false};
+  options.expert.skip = {.rotations = false, .blocks = false, .pairs = false};
   Simulator complete(mixed(), options);
   run(skipping, 25);
   run(complete, 25);
@@ -90,7 +90,7 @@ TEST(Contact, SkipsWorkWithTheSameBits) {
 std::array<std::int64_t, 2> contacts_of(const Scene& scene, bool SimulateSkipOptions::*skips) {
   Simulator skipping(scene);
   SimulateOptions options;
-  options.skip.*skips = false;
+  options.expert.skip.*skips = false;
   Simulator complete(scene, options);
   run(skipping, 100);
   run(complete, 100);
@@ -135,7 +135,7 @@ TEST(Contact, SkipsIslandsWithinTheTolerance) {
   scene.bodies[2].angular_velocity = {1, 2, 3};
   Simulator skipping(scene);
   SimulateOptions options;
-  options.skip.islands = false;
+  options.expert.skip.islands = false;
   Simulator complete(scene, options);
   run(skipping, 7);
   run(complete, 7);

@@ -6,13 +6,11 @@
 #include <cmath>
 #include <tetwarp/scene_io.hpp>
 
+#include "tests/scene/scene_texts.hpp"
 #include "tests/simulate/stress_watch.hpp"
 
 namespace tetwarp::test {
 namespace {
-Scene shipped(const std::string& name) {
-  return parse_scene(scene_text(name), name);
-}
 
 /// A cloth that swings against a wall at x = 0.
 struct Swing {

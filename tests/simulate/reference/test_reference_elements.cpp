@@ -8,6 +8,7 @@
 #include "host/reference/simulate/make_system.hpp"
 #include "host/reference/simulate/step_system.hpp"
 #include "tests/support/body_scenes.hpp"
+#include "tests/support/eigen_points.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -15,9 +16,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Vector3d vector_of(const Point3& p) {
-  return {p[0], p[1], p[2]};
-}
 Point3 point_of(const Vector3d& v) {
   return {v(0), v(1), v(2)};
 }

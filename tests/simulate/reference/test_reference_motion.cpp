@@ -6,15 +6,12 @@
 #include <cmath>
 
 #include "tests/support/body_scenes.hpp"
+#include "tests/support/eigen_points.hpp"
 
 namespace tetwarp::test {
 namespace {
 
 using Eigen::Vector3d;
-
-Vector3d vector_of(const Point3& p) {
-  return {p[0], p[1], p[2]};
-}
 
 struct EnergyRun {
   double start = 0, end = 0, largest_gain = 0;

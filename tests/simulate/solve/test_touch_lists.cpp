@@ -176,7 +176,7 @@ struct TouchLists {
     touch_start.resize(index_of(rows + 1));
     each(rows + 1, NodeListBody{counted, in.body_of_row, squares_before, view(bodies),
                                 view(row_of_node), view(pair_start)});
-    std::vector<CellPair> touches(row.size());
+    std::vector<KeyValue> touches(row.size());
     each(contacts + 1,
          TouchListBody{in, counted, view(bodies), view(block_start), view(part_start), view(row),
                        view(node), view(contact), view(part), view(part_block), view(part_body),

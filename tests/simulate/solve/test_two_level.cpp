@@ -139,7 +139,7 @@ TEST(TwoLevelContact, AgreesWithTheContactSolver) {
   options.solver.tolerance = 1e-9;
 
   const auto own = run_stack(scene, options, 0, nullptr);
-  options.solver.coupling = ContactCoupling::condensed;
+  options.solver.expert.coupling = ContactCoupling::condensed;
   const auto solver = run_stack(scene, options, 0, nullptr);
 
   for (std::size_t n = 0; n < own.size(); ++n) {
@@ -201,7 +201,7 @@ TEST(TwoLevelContact, TakesFewerOuterIterationsThanBlockJacobi) {
   options.solver.tolerance = 1e-4;
 
   const auto own = run_stack(scene, options, 0, nullptr);
-  options.solver.coupling = ContactCoupling::iterated;
+  options.solver.expert.coupling = ContactCoupling::iterated;
   const auto jacobi = run_stack(scene, options, 0, nullptr);
 
   std::int64_t own_count = 0, jacobi_count = 0;

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "tests/simulate/simulate_scenes.hpp"
+#include "tests/simulate/touch_run.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -30,17 +30,6 @@ Scene coupled() {
   return scene;
 }
 
-std::vector<Point3> places(const Simulator& simulator) {
-  std::vector<Point3> all;
-  for (std::size_t b = 0; b < simulator.scene().bodies.size(); ++b) {
-    for (const auto& list : {simulator.node_positions(b), simulator.node_velocities(b),
-                             simulator.surface_positions(b)}) {
-      all.insert(all.end(), list.begin(), list.end());
-    }
-  }
-  return all;
-}
-
 TEST(Checkpoint, GoesOnBitForBit) {
   Simulator first(coupled());
   run(first, 7);
@@ -59,7 +48,7 @@ TEST(Checkpoint, GoesOnBitForBit) {
   EXPECT_EQ(second.checkpoint(), bytes);
   run(second, 10);
 
-  EXPECT_EQ(places(first), places(second));
+  EXPECT_EQ(places_of(first), places_of(second));
   EXPECT_EQ(first.checkpoint(), second.checkpoint());
 }
 
@@ -67,7 +56,7 @@ TEST(Checkpoint, RefusesOtherScenesAndDamagedBytes) {
   Simulator simulator(coupled());
   simulator.step();
   auto bytes = simulator.checkpoint();
-  const auto before = places(simulator);
+  const auto before = places_of(simulator);
   Scene other = coupled();
   other.handles[0].path[1].time = 0.3;
   Simulator of_other(other);
@@ -84,7 +73,7 @@ TEST(Checkpoint, RefusesOtherScenesAndDamagedBytes) {
     EXPECT_THROW(simulator.restore(bytes), std::invalid_argument) << place;
     bytes[place] ^= std::byte{4};
   }
-  EXPECT_EQ(places(simulator), before);
+  EXPECT_EQ(places_of(simulator), before);
 }
 
 /// What loads and paths act on is in no list of the model.
@@ -112,7 +101,7 @@ TEST(Simulator, HasTheSameBitsForAnyNumberOfThreads) {
   run(one, 10);
   run(three, 10);
 
-  EXPECT_EQ(places(one), places(three));
+  EXPECT_EQ(places_of(one), places_of(three));
   EXPECT_EQ(one.record().energy.total(), three.record().energy.total());
 }
 
@@ -130,7 +119,7 @@ TEST(Simulator, CancelledStepHasNoEffect) {
   Simulator other(coupled());
   run(other, 4);
 
-  EXPECT_EQ(places(simulator), places(other));
+  EXPECT_EQ(places_of(simulator), places_of(other));
 }
 
 TEST(Simulator, ThrowingProgressHasNoEffect) {
@@ -153,7 +142,7 @@ TEST(Simulator, BackEndReferenceAgrees) {
   run(reference, 15);
 
   EXPECT_EQ(reference.backend(), Backend::reference);
-  const auto a = places(cpu), b = places(reference);
+  const auto a = places_of(cpu), b = places_of(reference);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT(distance_of(a[i], b[i]), 1e-9);
   EXPECT_NEAR(cpu.record().energy.total(), reference.record().energy.total(), 1e-8);

@@ -8,10 +8,12 @@
 namespace tetwarp::test {
 namespace {
 
+using Inertia = std::array<double, 9>;  // row major
+
 /// Inertia about the centre, axes of the geometry.
-Matrix3 inertia_of(const Model& model) {
-  const Matrix3 r = rotation_of(model.rigid.axes[0]);
-  Matrix3 inertia{};
+Inertia inertia_of(const Model& model) {
+  const RotationMatrix r = rotation_of(model.rigid.axes[0]);
+  Inertia inertia{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -34,7 +36,7 @@ TEST(RigidMass, OfABoxIsItsClosedForm) {
   const double mass = 1000 * 8 * 0.2 * 0.1 * 0.3;
   EXPECT_NEAR(model.rigid.mass[0], mass, 1e-11 * mass);
   EXPECT_LT(distance_of(model.rigid.centre[0], {5, -7, 2}), 1e-13);
-  const Matrix3 inertia = inertia_of(model);
+  const Inertia inertia = inertia_of(model);
   EXPECT_NEAR(inertia[0], mass / 3 * (0.01 + 0.09), 1e-12 * mass);
   EXPECT_NEAR(inertia[4], mass / 3 * (0.04 + 0.09), 1e-12 * mass);
   EXPECT_NEAR(inertia[8], mass / 3 * (0.04 + 0.01), 1e-12 * mass);
@@ -55,7 +57,7 @@ TEST(RigidMass, OfATetrahedronIsItsClosedForm) {
 
   EXPECT_NEAR(model.rigid.mass[0], 1, 1e-14);
   EXPECT_LT(distance_of(model.rigid.centre[0], {0.25, 0.25, 0.25}), 1e-14);
-  const Matrix3 inertia = inertia_of(model);
+  const Inertia inertia = inertia_of(model);
   for (std::size_t i = 0; i < 9; ++i) {
     EXPECT_NEAR(inertia[i], i % 4 == 0 ? 3.0 / 40 : 1.0 / 80, 1e-14);
   }
@@ -69,8 +71,8 @@ TEST(RigidMass, GivenMassAndInertiaReplaceThoseOfTheSurface) {
   const Model model = model_of(scene_of({body}, 0.01));
 
   EXPECT_EQ(model.rigid.mass[0], 3);
-  const Matrix3 inertia = inertia_of(model);
-  const Matrix3 expected{2, 0.1, 0.3, 0.1, 3, -0.2, 0.3, -0.2, 4};
+  const Inertia inertia = inertia_of(model);
+  const Inertia expected{2, 0.1, 0.3, 0.1, 3, -0.2, 0.3, -0.2, 4};
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(inertia[i], expected[i], 1e-14);
 }
 
@@ -83,7 +85,7 @@ TEST(RigidStart, FollowsPoseAndSpin) {
 
   const Model model = model_of(scene_of({body}, 0.01));
 
-  const Matrix3 inertia = inertia_of(model);
+  const Inertia inertia = inertia_of(model);
   const Point3 turned = rotate(conjugate(body.pose.rotation), body.angular_velocity);
   const Point3 expected = rotate(body.pose.rotation, times(inertia, turned));
   EXPECT_LT(distance_of(model.start.angular_momentum[0], expected), 1e-12);

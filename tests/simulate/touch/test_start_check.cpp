@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string>
 
+#include "host/simulate/model/box_tree.hpp"
 #include "host/simulate/start/start_check.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
 #include "host/simulate/surfaces/surface_motion.hpp"
-#include "host/simulate/surfaces/triangle_tree.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"
 
@@ -203,10 +203,10 @@ TEST(NearPair, HoldsTheDistanceAndItsVertices) {
   EXPECT_NEAR(pair(PairKind::vertex_vertex, 0, 4).distance, std::hypot(1, 1.5) - 0.35, 1e-14);
 }
 
-TEST(TriangleTree, FindsWhatABruteSearchFinds) {
+TEST(BoxTree, FindsWhatABruteSearchFinds) {
   const Surface surface =
       TouchScene(two_boxes({1, 1, 1}, {0.1, 0.1, 0.1}, {5, 0, 0})).geometry.bodies[0].surface;
-  const TriangleTree tree(surface.points, surface.triangles);
+  const BoxTree tree(boxes_of(surface.points, surface.triangles));
   for (double x = -1.2; x < 1.3; x += 0.37) {
     const Bounds box{{x, -0.2, -1.1}, {x + 0.3, 0.4, 0.1}};
     std::vector<std::int32_t> found, exact;
@@ -224,7 +224,7 @@ TEST(TriangleTree, FindsWhatABruteSearchFinds) {
     std::sort(found.begin(), found.end());
     EXPECT_EQ(found, exact);
   }
-  TriangleTree({}, {}).visit({{0, 0, 0}, {1, 1, 1}}, [](std::int32_t) { FAIL(); });
+  BoxTree({}).visit({{0, 0, 0}, {1, 1, 1}}, [](std::int32_t) { FAIL(); });
 }
 
 }  // namespace

@@ -39,14 +39,6 @@ class Intersections {
   SurfacePlaces places_;
 };
 
-Body soft_ball(const std::string& name, const Point3& position) {
-  Body body = elastic_box(name, {0.1, 0.1, 0.1}, {3, 3, 3});
-  body.geometry = Shape{EllipsoidShape{{0.1, 0.1, 0.1}}};
-  body.surface = std::int64_t{80};
-  body.pose.position = position;
-  return body;
-}
-
 Scene overlapping() {
   Scene scene = scene_of({soft_ball("left", {0, 0, 0}), soft_ball("right", {0.12, 0.01, 0.02}),
                           soft_ball("top", {0.05, 0.02, 0.1})},

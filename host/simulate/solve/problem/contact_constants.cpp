@@ -4,18 +4,10 @@
 
 #include <numeric>
 
+#include "host/base/vector_view.hpp"
 #include "kernels/contact/contact_fill.hpp"
 
 namespace tetwarp {
-namespace {
-
-template <class T>
-View<const T> view_of(const std::vector<T>& own) {
-  return {own.data(), static_cast<std::int64_t>(own.size())};
-}
-
-}  // namespace
-
 void ContactConstantsList::set(const ContactProblem& laws) {
   const AdhesionState& adhesion = laws.adhesion;
   const std::size_t count = laws.friction.size();

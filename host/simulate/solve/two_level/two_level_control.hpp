@@ -59,7 +59,9 @@ class TwoLevelControl {
   static constexpr double least_damping = 1.0 / 16;
 
   /// omega of the bodies that A couples to others.
-  static double relaxation(const ContactOptions& options) { return 1.3 * options.relaxation; }
+  static double relaxation(const ContactOptions& options) {
+    return 1.3 * options.expert.relaxation;
+  }
 
   struct Options {
     bool has_elastic = false;     ///< bodies that are solved by their factors at rest

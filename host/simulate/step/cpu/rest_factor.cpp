@@ -7,6 +7,7 @@
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/simulate/step/cpu/rest_matrix.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"
 #include "kernels/body/tet_force.hpp"
@@ -16,12 +17,7 @@ namespace {
 
 using Matrix = RestMatrix::Matrix;
 
-constexpr std::int32_t most_nodes = 4096;
-
-template <class T>
-View<const T> view_of(const std::vector<T>& own) {
-  return {own.data(), static_cast<std::int64_t>(own.size())};
-}
+constexpr std::int32_t most_nodes = 4096;  // all columns() then take 36 * 4096^2 bytes, 604 MB
 
 }  // namespace
 

@@ -128,7 +128,7 @@ class TouchingLists {
   DeviceVector<std::int32_t> block_start_, part_start_, row_, node_, contact_, part_, part_block_,
       part_body_, touch_start_, touch_, row_of_node_;
   DeviceVector<double> jacobian_;
-  DeviceVector<CellPair> touches_;
+  DeviceVector<KeyValue> touches_;
 };
 
 }  // namespace tetwarp

@@ -1,28 +1,23 @@
-/// @file triangle_tree.cpp
-/// Divides the triangles into halves along the longest extent of their boxes.
-#include "host/simulate/surfaces/triangle_tree.hpp"
+/// @file box_tree.cpp
+/// Divides the boxes into halves along their longest extent.
+#include "host/simulate/model/box_tree.hpp"
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace tetwarp {
 namespace {
 constexpr std::int32_t leaf_size = 8;
 }
 
-TriangleTree::TriangleTree(const std::vector<Point3>& points,
-                           const std::vector<std::array<std::int32_t, 3>>& triangles) {
-  boxes_.reserve(triangles.size());
-  for (const auto& triangle : triangles) {
-    Bounds& box = boxes_.emplace_back();
-    for (const std::int32_t corner : triangle) box.include(at(points, corner));
-  }
-  order_.resize(triangles.size());
+BoxTree::BoxTree(std::vector<Bounds> boxes) : boxes_(std::move(boxes)) {
+  order_.resize(boxes_.size());
   std::iota(order_.begin(), order_.end(), 0);
   if (!order_.empty()) build(0, static_cast<std::int32_t>(order_.size()));
 }
 
-void TriangleTree::build(std::int32_t begin, std::int32_t end) {
+void BoxTree::build(std::int32_t begin, std::int32_t end) {
   const std::size_t index = nodes_.size();
   Node node{{}, begin, end, -1};
   for (std::int32_t i = begin; i < end; ++i) {
@@ -35,8 +30,8 @@ void TriangleTree::build(std::int32_t begin, std::int32_t end) {
   const auto axis =
       static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
   const std::int32_t middle = begin + (end - begin) / 2;
-  const auto centre = [&](std::int32_t t) {
-    return at(boxes_, t).low[axis] + at(boxes_, t).high[axis];
+  const auto centre = [&](std::int32_t item) {
+    return at(boxes_, item).low[axis] + at(boxes_, item).high[axis];
   };
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](std::int32_t a, std::int32_t b) {

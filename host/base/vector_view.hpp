@@ -1,11 +1,10 @@
-/// @file vectors.hpp
-/// std::vector with the int64 indices and the views that the stages of the contact solver take.
+/// @file vector_view.hpp
+/// Arrays of the host as views, which stages read.
 #pragma once
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "host/base/index_of.hpp"
 #include "kernels/base/view.hpp"
 
 namespace tetwarp {
