@@ -7,7 +7,6 @@
 
 #include "host/base/disjoint_sets.hpp"
 #include "host/base/index_of.hpp"
-#include "host/base/vector_view.hpp"
 #include "host/contact/structure/color.hpp"
 
 namespace tetwarp {
