@@ -123,6 +123,7 @@ if(NOT BUILD_SHARED_LIBS)
   set(tetwarp_contact_law_tests  # closed forms of contact, through the Simulator
     tests/simulate/laws/test_law_adhesion.cpp
     tests/simulate/laws/test_law_balances.cpp
+    tests/simulate/laws/test_law_budget.cpp
     tests/simulate/laws/test_law_flat_floors.cpp
     tests/simulate/laws/test_law_repeats.cpp
     tests/simulate/laws/test_law_slopes.cpp

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -53,6 +54,10 @@ struct SimulateOptions {
   bool float32_solve = false;  ///< conjugate gradients on a float32 copy of the system, refined
                                ///< in float64 to the same tolerance
   std::int64_t max_iterations = 10000;  ///< of conjugate gradients per solve
+  /// Wall time of a step [s], > 0: solves end in time for a step to take no more, with the best
+  /// velocities so far, and steps are divided no further; detection still keeps surfaces apart.
+  /// Results then depend on the clock. A step without solves may take longer than that.
+  double max_step_seconds = std::numeric_limits<double>::infinity();
   SimulateExpertOptions expert = {};
   bool untangle =
       false;  ///< elastic bodies and cloth that intersect others at the start are shrunk until
@@ -118,6 +123,7 @@ struct StepRecord {
   std::int64_t linear_iterations = 0;
   double linear_residual = 0;  ///< largest of an island, relative
   bool converged = true;       ///< whether all solves reached their tolerance
+  bool out_of_time = false;    ///< whether SimulateOptions::max_step_seconds ended solves
   std::int64_t skipped_rotations = 0, skipped_blocks = 0;  ///< see SimulateSkipOptions
   std::int64_t contacts = 0;
   std::int64_t contact_passes = 0;   ///< detections of the parts of the step, in all

@@ -189,6 +189,21 @@ TEST(SimulateContact, ExitsWith3WhereABodyIsSqueezed) {
   EXPECT_GT(*std::min_element(nearest.begin(), nearest.end()), 0);
 }
 
+TEST(SimulateContact, MarksStepsThatRanOutOfTime) {
+  const Landing scene;
+
+  const CommandResult result =
+      scene.simulate({"-o", "out", "--steps", "60", "--max-step-seconds", "1e-9"});
+
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_NE(result.err.find("ended by --max-step-seconds"), std::string::npos) << result.err;
+  const Numbers late = scene.series("out", "out_of_time");
+  EXPECT_EQ(late.front(), 0);
+  EXPECT_EQ(late.back(), 1);
+  const Numbers nearest = scene.series("out", "smallest_distance");
+  EXPECT_GT(*std::min_element(nearest.begin(), nearest.end()), 0);
+}
+
 TEST(SimulateContact, RefusesOverlapsUnlessTheyAreUntangled) {
   const Landing scene;
   std::string text = landing_scene;

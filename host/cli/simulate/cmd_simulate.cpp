@@ -55,7 +55,7 @@ int run_simulate(const SimulateArguments& arguments) {
     if (!result.is_interrupted) print_summary(arguments, run, result);
   }
   if (result.is_interrupted) throw Cancelled();
-  return result.unconverged_steps > 0 ? not_converged_exit_code : 0;
+  return result.unconverged_steps + result.late_steps > 0 ? not_converged_exit_code : 0;
 }
 }  // namespace
 

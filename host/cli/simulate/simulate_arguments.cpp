@@ -92,6 +92,10 @@ void declare_running(CLI::App& app, SimulateArguments& arguments) {
                  "of conjugate gradients per solve [10000]")
       ->check(at_least(1))
       ->type_name("N");
+  app.add_option("--max-step-seconds", simulate.max_step_seconds,
+                 "wall time of a step: solves end in time with what they have [no limit]")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
   app.add_option("--report", arguments.report, "report as JSON [FOLDER/report.json]")
       ->type_name("FILE");
   add_quiet(app, arguments.quiet);

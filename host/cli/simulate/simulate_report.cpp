@@ -59,6 +59,7 @@ std::string report_json(const SimulateArguments& arguments,
   if (!result.error.empty()) json["error"] = result.error;
   json["converged"] = result.unconverged_steps == 0;
   json["unconverged_steps"] = result.unconverged_steps;
+  json["out_of_time_steps"] = result.late_steps;
   json["first_step"] = result.first_step;
   json["steps_done"] = result.steps_done;
   json["time_step"] = simulator.scene().time_step;

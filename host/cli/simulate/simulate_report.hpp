@@ -19,6 +19,7 @@ struct SimulateResult {
   std::int64_t steps_done = 0;         ///< of the scene
   std::int64_t frames = 0;             ///< written by this run
   std::int64_t unconverged_steps = 0;  ///< above their tolerance
+  std::int64_t late_steps = 0;         ///< whose solves ended by --max-step-seconds
   bool is_interrupted = false;
   std::string error;  ///< why a step failed; empty: none did
   double read_seconds = 0, setup_seconds = 0, step_seconds = 0, write_seconds = 0, warp_seconds = 0,

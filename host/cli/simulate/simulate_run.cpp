@@ -286,6 +286,7 @@ void SimulateRun::take_steps(ProgressBar& bar) {
     if (!take_step()) return;
     const std::int64_t step = simulator_->step_index();
     if (!simulator_->record().converged) ++result_.unconverged_steps;
+    if (simulator_->record().out_of_time) ++result_.late_steps;
     write_row();
     if (next_frame_ < frames_->count() && frames_->step_of(next_frame_) == step) {
       write_frame(next_frame_++);
@@ -336,6 +337,12 @@ void SimulateRun::finish() {
   }
   result_.warnings = simulator_->scene().notes;
   add_adhesion_warnings(arguments_.scene(), simulator_->scene(), result_.warnings);
+  if (result_.late_steps > 0) {
+    result_.warnings.push_back(fmt::format(
+        "{}: the solves of {} of {} steps ended by --max-step-seconds (series.h5: out_of_time)",
+        arguments_.scene(), result_.late_steps,
+        simulator_->step_index() - result_.first_step));
+  }
   if (result_.unconverged_steps > 0) {
     result_.warnings.push_back(fmt::format(
         "{}: {} of {} steps ended above their tolerance (series.h5: converged)", arguments_.scene(),

@@ -81,6 +81,7 @@ void StepSeries::add_totals() {
   add_count("linear_iterations", [](Record r) { return r.linear_iterations; });
   add_number("linear_residual", [](Record r) { return r.linear_residual; });
   add_count("converged", [](Record r) { return std::int64_t{r.converged}; });
+  add_count("out_of_time", [](Record r) { return std::int64_t{r.out_of_time}; });
   add_count("sweeps", [](Record r) { return r.sweeps; });
   add_count("outer_iterations", [](Record r) { return r.outer_iterations; });
   add_number("contact_residual", [](Record r) { return r.contact_residual; });

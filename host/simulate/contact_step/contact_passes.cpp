@@ -8,6 +8,7 @@
 #include "host/base/index_of.hpp"
 #include "host/simulate/contact_step/added_seconds.hpp"
 #include "host/simulate/contact_step/expected_motion.hpp"
+#include "host/simulate/step/step_clock.hpp"
 #include "host/simulate/solve/solver_islands.hpp"
 
 namespace tetwarp {
@@ -33,7 +34,7 @@ ContactSystemOptions system_options(const Scene& scene,
   of.solver.max_newton = 20000;
   // A solver that remembers systems would not go on from a checkpoint bit for bit.
   of.solver.expert.skip.constant_systems = false;
-  if (options.progress) of.solver.progress = std::move(progress);
+  if (options.progress || options.clock != nullptr) of.solver.progress = std::move(progress);
   of.skips_islands = options.skip.islands;
   of.factors = options.factors;
   return of;
@@ -48,14 +49,14 @@ ContactPasses::ContactPasses(const PassParts& parts, const ContactStepOptions& o
       system_(parts.surfaces,
               parts.model,
               system_options(parts.scene, options, [this](const ContactProgress&) {
-                was_ended_ = was_ended_ || !options_.progress();
-                return !was_ended_;
+                was_ended_ = was_ended_ || (options_.progress && !options_.progress());
+                return !was_ended_ && !is_late();
               })) {}
 
 void ContactPasses::run(bool is_first, BodyStepper& stepper, ContactPart& part) {
   was_ended_ = has_pairs_ = false;
   const bool is_expected = expect_contacts_of_last_step();
-  for (std::size_t pass = 0; pass < parts_.motion.passes(); ++pass) {
+  for (std::size_t pass = 0; pass < parts_.motion.passes() && (pass == 0 || !is_late()); ++pass) {
     const bool was_free = parts_.motion.is_free();
     if (!detect(pass, is_expected, part)) return;
     {
@@ -70,6 +71,11 @@ void ContactPasses::run(bool is_first, BodyStepper& stepper, ContactPart& part) 
   }
   const AddedSeconds seconds(part.seconds.detection);
   parts_.motion.shorten({});
+}
+
+/// Whether the step has no time for more solves.
+bool ContactPasses::is_late() const {
+  return options_.clock != nullptr && options_.clock->is_over();
 }
 
 /// Sets the velocities to those without contact, or to those that the contacts of the last step are
@@ -122,6 +128,7 @@ bool ContactPasses::solve(BodyStepper& stepper, ContactPart& part) {
   part.sweeps += outcome.sweeps;
   part.outer_iterations += outcome.outer_iterations;
   part.is_completed = !was_ended_;
+  if (options_.clock != nullptr) options_.clock->end_solve();
   return part.is_completed && motion.is_finite();
 }
 

@@ -42,6 +42,7 @@ class ContactPasses {
   const ContactSystem& system() const { return system_; }
 
  private:
+  bool is_late() const;
   bool expect_contacts_of_last_step();
   bool detect(std::size_t pass, bool is_expected, ContactPart& part);
   void track(bool is_first);

@@ -9,6 +9,7 @@
 namespace tetwarp {
 
 class RestFactors;
+class StepClock;
 
 struct ContactStepOptions {
   Backend backend = Backend::cpu;
@@ -18,6 +19,8 @@ struct ContactStepOptions {
   bool sleeps = false;                        ///< bodies may sleep
   std::shared_ptr<RestFactors> factors = {};  ///< of elastic bodies, or null: own ones
   std::function<bool()> progress = {};        ///< false ends the step
+  StepClock* clock = nullptr;  ///< kept by the caller: where it is over solves end with the
+                               ///< velocities that they have; null: no limit
 };
 
 }  // namespace tetwarp

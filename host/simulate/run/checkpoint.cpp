@@ -17,7 +17,7 @@ namespace tetwarp {
 namespace {
 
 constexpr std::uint64_t checkpoint_kind = 0x7477'7363'0000'0000;  // "twsc", then the version
-constexpr std::uint64_t checkpoint_version = checkpoint_kind + 5;
+constexpr std::uint64_t checkpoint_version = checkpoint_kind + 6;
 
 bool has_checksum(std::span<const std::byte> bytes) {
   std::uint64_t checksum = 0;

@@ -25,8 +25,11 @@ class StepFailed : public std::runtime_error {
 
 }  // namespace
 
-DividedStep::DividedStep(const SimulatedScene& scene, StepCount& count, MovingBodies& bodies)
-    : scene_(scene), count_(count), bodies_(bodies), division_(scene) {
+DividedStep::DividedStep(const SimulatedScene& scene,
+                         StepCount& count,
+                         StepClock& clock,
+                         MovingBodies& bodies)
+    : scene_(scene), count_(count), clock_(clock), bodies_(bodies), division_(scene) {
   last_.sums.reset(scene.scene.bodies.size(), scene.scene.obstacles.size(),
                    scene.scene.couplings.size());
 }
@@ -35,6 +38,7 @@ bool DividedStep::step() {
   stopwatch_ = {};
   seconds_ = {};
   count_.begin_step();
+  clock_.begin_step();
   bodies_.begin_step();
   std::string what;
   try {
@@ -59,7 +63,7 @@ bool DividedStep::step() {
 bool DividedStep::make() {
   int parts = division_.first_parts(bodies_.state().largest_spin());
   StepAttempt made = attempt(parts);
-  while (made.is_completed && !made.is_good && division_.can_double(parts)) {
+  while (made.is_given_up) {
     go_back();
     parts *= 2;
     made = attempt(parts);
@@ -71,7 +75,8 @@ bool DividedStep::make() {
                      "stiffness or loads");
   }
   bodies_.end_step(made.is_good);
-  accept(std::move(made), parts);
+  clock_.end_step();
+  accept(std::move(made));
   count_.end_step();
   return true;
 }
@@ -85,16 +90,18 @@ StepAttempt DividedStep::attempt(int parts) {
   StepAttempt made;
   made.sums.reset(scene_.scene.bodies.size(), scene_.scene.obstacles.size(),
                   scene_.scene.couplings.size());
-  for (int part = 0; part < parts; ++part) {
-    if (!make_part(part, parts, made)) break;
+  attempt_ = {};
+  for (int first = 0, past = 0; first < parts; first = past) {
+    past = clock_.is_over() ? parts : first + 1;  // the rest at once where there is no time
+    if (!make_part(part_of(first, past, parts), parts, made)) break;
+    ++made.parts;
   }
   add_all_seconds(made);
   return made;
 }
 
 /// @returns whether the next part may follow
-bool DividedStep::make_part(int part, int parts, StepAttempt& made) {
-  const StepPart of = part_of(part, parts);
+bool DividedStep::make_part(const StepPart& of, int parts, StepAttempt& made) {
   ContactPart contact;
   try {
     contact = bodies_.advance(of, made);
@@ -104,23 +111,27 @@ bool DividedStep::make_part(int part, int parts, StepAttempt& made) {
                        "; reduce time_step, the speeds or the thickness");
     }
     made.is_good = false;
+    made.is_given_up = true;
     return false;
   }
   if (!made.is_completed) return false;
   made.is_good = division_.is_good(made, contact, of.time_step, bodies_.state()) && made.is_good;
-  if (!made.is_good && division_.can_double(parts)) return false;
-  if (!made.is_finite) return false;
+  // An attempt with twice as many parts takes at least twice as long.
+  made.is_given_up = !made.is_good && division_.can_double(parts) &&
+                     (!made.is_finite || clock_.allows(2 * attempt_.seconds()));
+  if (made.is_given_up || !made.is_finite) return false;
   bodies_.end_part(of, made.sums);
   return true;
 }
 
-StepPart DividedStep::part_of(int part, int parts) const {
+/// Parts `first` to `past` of equal ones, as one.
+StepPart DividedStep::part_of(int first, int past, int parts) const {
   const auto steps = static_cast<double>(count_.done());
   StepPart of;
   of.end_time =
-      count_.time_of(part + 1 == parts ? steps + 1 : steps + static_cast<double>(part + 1) / parts);
-  of.time_step = scene_.scene.time_step / parts;
-  of.is_first = count_.done() == 0 && part == 0;
+      count_.time_of(past == parts ? steps + 1 : steps + static_cast<double>(past) / parts);
+  of.time_step = (past - first) * (scene_.scene.time_step / parts);
+  of.is_first = count_.done() == 0 && first == 0;
   return of;
 }
 
@@ -129,14 +140,15 @@ void DividedStep::add_all_seconds(const StepAttempt& made) {
   add_seconds(made.contact.seconds, seconds_);
 }
 
-void DividedStep::accept(StepAttempt made, int parts) {
+void DividedStep::accept(StepAttempt made) {
   division_.accept(made);
   seconds_.total = stopwatch_.seconds();
   last_.outcome = made.outcome;
   last_.outcome.seconds = seconds_;
   last_.contact = std::move(made.contact);
   last_.sums = std::move(made.sums);
-  last_.substeps = parts;
+  last_.substeps = made.parts;
+  last_.is_out_of_time = clock_.was_over();
   last_.work += last_.sums.work;
   last_.points.clear();
   if (bodies_.contact() != nullptr) bodies_.contact()->take_points(last_.points);

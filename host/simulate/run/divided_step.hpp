@@ -16,8 +16,11 @@ namespace tetwarp {
 
 class DividedStep {
  public:
-  /// @param scene, count, bodies  kept by the caller
-  DividedStep(const SimulatedScene& scene, StepCount& count, MovingBodies& bodies);
+  /// @param scene, count, clock, bodies  kept by the caller
+  DividedStep(const SimulatedScene& scene,
+              StepCount& count,
+              StepClock& clock,
+              MovingBodies& bodies);
 
   /// Makes a step. @returns false if `progress` ended it; then all is as before
   /// @throws std::runtime_error  one line with step, bodies and remedy: positions would not be
@@ -34,18 +37,20 @@ class DividedStep {
   bool make();
   void go_back();
   StepAttempt attempt(int parts);
-  bool make_part(int part, int parts, StepAttempt& attempt);
-  StepPart part_of(int part, int parts) const;
+  bool make_part(const StepPart& of, int parts, StepAttempt& attempt);
+  StepPart part_of(int first, int past, int parts) const;
   void add_all_seconds(const StepAttempt& made);
-  void accept(StepAttempt made, int parts);
+  void accept(StepAttempt made);
   std::string failed_in(int parts);
 
   const SimulatedScene& scene_;
   StepCount& count_;
+  StepClock& clock_;
   MovingBodies& bodies_;
   StepDivision division_;
   LastStep last_;
   Stopwatch stopwatch_;  ///< of the running step
+  Stopwatch attempt_;    ///< of its running attempt
   StepSeconds seconds_;  ///< of all its attempts
 };
 

@@ -14,9 +14,10 @@
 
 namespace tetwarp {
 
-MovingBodies::MovingBodies(SimulatedScene& scene, StepCount& count)
+MovingBodies::MovingBodies(SimulatedScene& scene, StepCount& count, StepClock& clock)
     : scene_(scene),
       count_(count),
+      clock_(clock),
       drive_(scene.scene, scene.geometry, scene.model),
       rest_factors_(std::make_shared<RestFactors>(scene.model)),
       contact_(make_contact()),
@@ -36,6 +37,7 @@ std::unique_ptr<ContactStep> MovingBodies::make_contact() {
   of.sleeps = scene_.scene.solver.sleeping;
   of.factors = rest_factors_;
   if (count_.has_progress()) of.progress = [this] { return count_.goes_on(0); };
+  if (clock_.is_limited()) of.clock = &clock_;
   return std::make_unique<ContactStep>(scene_.scene, scene_.model, scene_.surfaces, of);
 }
 
@@ -63,6 +65,7 @@ std::unique_ptr<BodyStepper> MovingBodies::make_stepper() {
   if (count_.has_progress()) {
     of.progress = [this](std::int64_t iterations) { return count_.goes_on(iterations); };
   }
+  if (clock_.is_limited()) of.clock = &clock_;
   if (scene_.backend == Backend::cuda) return make_cuda_stepper(scene_.model, of);
   if (scene_.backend == Backend::reference) {
     return make_reference_stepper(scene_.scene, scene_.geometry, scene_.model, drive_, of);

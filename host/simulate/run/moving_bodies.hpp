@@ -12,6 +12,7 @@
 #include "host/simulate/run/step_count.hpp"
 #include "host/simulate/start/rest_growth.hpp"
 #include "host/simulate/step/scene_drive.hpp"
+#include "host/simulate/step/step_clock.hpp"
 #include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp {
@@ -27,8 +28,8 @@ class MovingBodies {
  public:
   /// @param scene  kept by the caller; bodies that start too near each other change the start of
   ///               its model
-  /// @param count  kept by the caller
-  MovingBodies(SimulatedScene& scene, StepCount& count);
+  /// @param count, clock  kept by the caller
+  MovingBodies(SimulatedScene& scene, StepCount& count, StepClock& clock);
 
   /// Keeps the state, for go_back().
   void begin_step();
@@ -65,6 +66,7 @@ class MovingBodies {
 
   const SimulatedScene& scene_;
   StepCount& count_;
+  StepClock& clock_;
   SceneDrive drive_;
   std::shared_ptr<RestFactors> rest_factors_;
   std::unique_ptr<ContactStep> contact_;

@@ -29,6 +29,10 @@ SimulatedScene::SimulatedScene(Scene scene_of_caller, const SimulateOptions& opt
     throw std::invalid_argument("max_iterations: expected 1 or more, got " +
                                 std::to_string(options.max_iterations));
   }
+  if (!(options.max_step_seconds > 0)) {
+    throw std::invalid_argument("max_step_seconds: expected more than 0, got " +
+                                std::to_string(options.max_step_seconds));
+  }
   surfaces = make_scene_surfaces(scene, geometry, model);
   threads = thread_count(options.threads);
 }

@@ -99,12 +99,12 @@ template <class Stream, class State>
 void pass_state(Stream& stream, State& state) {
   auto& [steps, division, last, bodies, memory, overrides] = state;
   auto& [held_steps, undivided_steps] = division;
-  auto& [outcome, contact, sums, substeps, points, work] = last;
+  auto& [outcome, contact, sums, substeps, is_out_of_time, points, work] = last;
   auto& [drive, contacts, sleep] = memory;
   auto& [handles, delays] = drive;
   auto& [moved_handles, moved_scripts] = overrides;
   auto& [is_asleep, calm_time, inputs] = sleep;
-  stream(steps, work, substeps, held_steps, undivided_steps);
+  stream(steps, work, substeps, is_out_of_time, held_steps, undivided_steps);
   pass_outcome(stream, outcome);
   pass_part(stream, contact);
   pass_bodies(stream, bodies);

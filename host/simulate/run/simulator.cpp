@@ -20,8 +20,9 @@ class Simulator::Impl {
   Impl(Scene scene_of_caller, const SimulateOptions& options)
       : scene(std::move(scene_of_caller), options),
         count(scene.scene.time_step, options.progress),
-        bodies(scene, count),
-        steps(scene, count, bodies),
+        clock(options.max_step_seconds),
+        bodies(scene, count, clock),
+        steps(scene, count, clock, bodies),
         records(scene, count, bodies, steps.last()),
         places(scene, count, bodies) {}
 
@@ -41,6 +42,7 @@ class Simulator::Impl {
 
   SimulatedScene scene;
   StepCount count;
+  StepClock clock;
   MovingBodies bodies;
   DividedStep steps;
   StepRecords records;

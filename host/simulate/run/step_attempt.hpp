@@ -11,6 +11,8 @@ struct StepAttempt {
   bool is_completed = true;  ///< false: `progress` ended it
   bool is_good = true;       ///< converged, finite, no body turned too far or was held up
   bool is_finite = true;
+  int parts = 0;             ///< that have been made
+  bool is_given_up = false;  ///< with more parts the step may become better
   StepOutcome outcome;  ///< of all parts
   ContactPart contact;  ///< of all parts
   StepSums sums;        ///< of all parts

@@ -63,6 +63,7 @@ void StepRecords::add_counts(StepRecord& record) const {
   record.islands = bodies_.contact() != nullptr ? contact.islands : scene_.model.island_count;
   record.sleeping = bodies_.sleep().count();
   record.substeps = last_.substeps;
+  record.out_of_time = last_.is_out_of_time;
   record.linear_iterations = outcome.linear_iterations;
   record.linear_residual = outcome.linear_residual;
   record.converged = outcome.converged && contact.converged;

@@ -93,7 +93,7 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                          rows, velocity);
   outcome.outer_iterations += solved.outer_iterations;
   outcome.sweeps += solved.sweeps;
-  if (solved.is_stopped) {
+  if (!solved.is_result && solved.is_stopped) {
     outcome.converged = false;
     return;
   }

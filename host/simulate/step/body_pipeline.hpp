@@ -11,6 +11,7 @@
 
 #include "host/simulate/step/body_arrays.hpp"
 #include "host/simulate/step/solve_arrays.hpp"
+#include "host/simulate/step/step_clock.hpp"
 #include "kernels/body/node_moved.hpp"
 #include "kernels/body/rigid_midpoint.hpp"
 
@@ -242,11 +243,12 @@ class BodyPipeline {
     }
     const GradientOptions limits = {options_.linear_tolerance, options_.max_iterations};
     const auto proceed = [&](std::int64_t iterations) {
-      return !options_.progress || options_.progress(iterations);
+      outcome.completed = outcome.completed && !(options_.progress && !options_.progress(iterations));
+      const bool is_late = options_.clock != nullptr && iterations > 0 && options_.clock->is_over();
+      return outcome.completed && !is_late;
     };
     exec_.solve_islands(
         linear_label, island_start_, a, limits, proceed, [&](const GradientEnd& end) {
-          outcome.completed &= !end.is_stopped;
           outcome.converged &= end.is_converged;
           outcome.linear_iterations = std::max(outcome.linear_iterations, end.iterations);
           outcome.linear_residual = std::max(outcome.linear_residual, end.residual);

@@ -18,6 +18,7 @@ namespace tetwarp {
 
 class DeviceStepper;
 class RestFactors;
+class StepClock;
 
 /// What acts from outside in one step. Sizes are those of the model.
 struct StepInput {
@@ -57,6 +58,8 @@ struct StepperOptions {
   SimulateSkipOptions skip = {};
   std::shared_ptr<RestFactors> factors = {};  ///< of elastic bodies, or null: own ones; cpu only
   std::function<bool(std::int64_t linear_iterations)> progress = {};  ///< false ends the step
+  StepClock* clock = nullptr;  ///< kept by the caller: where it is over the solve ends with the
+                               ///< velocities that it has; null: no limit
 };
 
 /// The linear system A v = b of a step, in memory of the host: rows as SystemRows, blocks column by

@@ -118,9 +118,6 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
     stepped_ = impulse_;
     outcome.sweeps += sweeps_.run(working_, control.enough(), y_, impulse_);
     ++outcome.outer_iterations;
-    if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
-      return End::is_stopped;
-    }
     step_.add_elastic(blocks_, stepped_.data(), impulse_.data(), y_);
     const View<const double> before{x_.data() + begin, size};
     const View<double> image{y_.data() + begin, size};
@@ -129,6 +126,9 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
       mixer.advance(before, image);
     }
     std::copy_n(y_.data() + begin, size, x_.data() + begin);
+    if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
+      return End::is_stopped;
+    }
   }
   return End::fails;
 }
@@ -160,9 +160,9 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     return outcome;
   }
   outcome.is_stopped = end == End::is_stopped;
-  if (outcome.is_stopped) return outcome;
   outcome.converged = end == End::converges;
-  outcome.is_result = outcome.converged || (!is_small() && std::isfinite(best_.residual));
+  outcome.is_result = outcome.converged || ((outcome.is_stopped || !is_small()) &&
+                                            std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) take_best(outcome);
   step_.for_each_row([&](std::int32_t row) {

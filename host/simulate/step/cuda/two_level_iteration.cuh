@@ -51,7 +51,8 @@ class TwoLevelIteration {
       end = iterate(can_be_damped, outcome);
     }
     outcome.is_stopped = end == End::is_stopped;
-    outcome.converged = outcome.is_result = end == End::converges;
+    outcome.converged = end == End::converges;
+    outcome.is_result = outcome.converged || outcome.is_stopped;
     return outcome;
   }
 
@@ -178,9 +179,6 @@ class TwoLevelIteration {
       grid_.copy(label, View<const double>(impulse()), stepped_.view());
       outcome.sweeps += step_contacts(control.enough());
       ++outcome.outer_iterations;
-      if (options_->progress && !options_->progress({clock_.seconds(), outcome.sweeps, 0})) {
-        return End::is_stopped;
-      }
       for_each(row_numbers_ / 3,
                RowPushBody{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
       move(const_view(image_));
@@ -189,6 +187,9 @@ class TwoLevelIteration {
         mixer.advance(velocity(), image_.view());
       }
       grid_.copy(label, const_view(image_), velocity());
+      if (options_->progress && !options_->progress({clock_.seconds(), outcome.sweeps, 0})) {
+        return End::is_stopped;
+      }
     }
     return End::fails;
   }
