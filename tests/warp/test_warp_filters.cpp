@@ -26,13 +26,6 @@ INSTANTIATE_TEST_SUITE_P(Backends, WarpFilters, each_backend, name_of_backend);
 
 constexpr std::array wide_filters = {Filter::cubic, Filter::bspline, Filter::lanczos};
 
-double largest_difference(const Volume& a, const Volume& b) {
-  const auto x = numbers_of(a), y = numbers_of(b);
-  double largest = x.size() == y.size() ? 0 : INFINITY;
-  for (std::size_t s = 0; s < x.size(); ++s) largest = std::max(largest, std::abs(x[s] - y[s]));
-  return largest;
-}
-
 /// Positions are good to 2e-6 voxel; samples below 1, neighbors differing by less than 1/8 per
 /// axis, make slopes of at most six times that. Weights and sums of float32 cost less than 60 ulp.
 /// Found: 3.6e-7.
