@@ -139,7 +139,8 @@ TEST(BodyStepper, SolvesIslandsLikeTheWhole) {
   whole.island_count = 1;
   std::fill(whole.body_island.begin(), whole.body_island.end(), 0);
 
-  EXPECT_LT(largest_difference(after(islands, exact(), 60), after(whole, exact(), 60)), 1e-11);
+  // 60 solves to 1e-13 of the loads, which motions of 10 m/s carry on.
+  EXPECT_LT(largest_difference(after(islands, exact(), 60), after(whole, exact(), 60)), 1e-10);
 }
 
 TEST(BodyStepper, HasTheSameBitsForAnyNumberOfThreads) {
