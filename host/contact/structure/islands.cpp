@@ -7,7 +7,7 @@
 
 #include "host/contact/problem/vectors.hpp"
 #include "host/contact/structure/color.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_components.hpp"
 
 namespace tetwarp {
@@ -31,7 +31,7 @@ Lists make_transposed(const Lists& lists, std::int64_t item_count) {
 std::vector<std::int32_t> HostStages::lowest_connected(const Lists& lists,
                                                        std::int64_t item_count) {
   std::vector<std::int32_t> lowest(static_cast<std::size_t>(item_count));
-  CpuContactExec exec(1);
+  CpuExec exec(1, StageClocks::off);
   contact_components(exec, view_of(lists.start), view_of(lists.item), view_of(lowest));
   return lowest;
 }
