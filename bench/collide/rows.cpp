@@ -9,8 +9,8 @@
 
 #include "bench/collide/sort_and_sweep.hpp"
 #include "bench/measure/row.hpp"
-#include "host/collide/cpu/detect_exec_cpu.hpp"
 #include "host/collide/detector_pipeline.hpp"
+#include "host/exec/exec_cpu.hpp"
 
 namespace tetwarp::bench {
 namespace {
@@ -63,8 +63,8 @@ class Pile {
 
  private:
   const test::CollideScene& scene_;
-  CpuDetectExec exec_;
-  DetectorPipeline<CpuDetectExec> pipeline_;
+  CpuExec exec_;
+  DetectorPipeline<CpuExec> pipeline_;
 };
 
 void run_detect(benchmark::State& state, int triangles, bool self, int threads, bool again) {

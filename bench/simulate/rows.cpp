@@ -10,7 +10,7 @@
 
 #include "bench/measure/row.hpp"
 #include "host/base/parallel.hpp"
-#include "host/simulate/step/cpu/huge_pages.hpp"
+#include "host/exec/huge_pages.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"
 #include "host/simulate/step/system_pattern.hpp"
 #include "tests/simulate/body_models.hpp"

@@ -9,16 +9,16 @@
 namespace tetwarp {
 
 /// Constant during a simulation.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class AreaBuffers {
  public:
   AreaBuffers(Exec& exec, const CollisionSurfaces& surfaces) : exec_(exec) {
     const TouchAreas areas(surfaces);
-    put(areas.start, start_);
-    put(areas.triangle, triangle_);
-    put(areas.mean_area, mean_area_);
-    put(surfaces.vertex_area, vertex_area_);
+    exec_.put(areas.start, start_);
+    exec_.put(areas.triangle, triangle_);
+    exec_.put(areas.mean_area, mean_area_);
+    exec_.put(surfaces.vertex_area, vertex_area_);
   }
 
   /// @param corners  of triangles, [triangles][3]
@@ -30,11 +30,6 @@ class AreaBuffers {
  private:
   template <class T>
   using Vector = typename Exec::template Vector<T>;
-
-  template <class T>
-  void put(const std::vector<T>& host, Vector<T>& own) {
-    exec_.put(host.data(), std::ssize(host), own);
-  }
 
   Exec& exec_;
   Vector<std::int32_t> start_, triangle_;

@@ -11,14 +11,14 @@
 #include "host/collide/grid_plan.hpp"
 #include "host/collide/item_boxes.hpp"
 #include "host/collide/motion_boxes.hpp"
-#include "host/collide/pair_limit.hpp"
+#include "kernels/base/pair_limit.hpp"
 #include "kernels/collide/entry_pairs.hpp"
 
 namespace tetwarp {
 
 /// Boxes of a search can have a margin, so that its pairs suffice for later motions that differ
 /// little.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class BroadPhase {
  public:

@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "host/collide/collision_surfaces.hpp"
+#include "kernels/base/pair_limit.hpp"
 #include "kernels/collide/pair_kind.hpp"
 #include "kernels/collide/touch.hpp"
 
@@ -43,13 +43,6 @@ struct ClosestPair {
   PairKind kind = PairKind::vertex_face;
   std::int32_t a = -1, b = -1;  ///< -1: nothing is nearer than the cap
   double distance = 0;          ///< [m]; without a pair the cap
-};
-
-/// More pairs than pair_limit.hpp allows: the motion is too fast, or too much of the surfaces is
-/// near each other.
-class TooManyPairs : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
 };
 
 struct DetectorOptions {

@@ -24,7 +24,7 @@
 
 namespace tetwarp {
 
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class DetectorPipeline {
  public:

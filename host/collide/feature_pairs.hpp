@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class FeaturePairs {
  public:
@@ -35,8 +35,8 @@ class FeaturePairs {
             std::span<const std::uint8_t> is_still,
             DetectionCounts& counts) {
     near_.find(surfaces_, items_, broad.partners(), planes, distance, is_still);
-    exec_.put(near_.start.data(), std::ssize(near_.start), start_);
-    exec_.put(near_.planes.data(), std::ssize(near_.planes), planes_);
+    exec_.put(near_.start, start_);
+    exec_.put(near_.planes, planes_);
     const std::int64_t vertices = near_.planes.empty() ? 0 : std::ssize(surfaces_.vertex_body);
     exec_.append("collide/pair_features", broad.pairs().size + vertices,
                  PairFeaturesBody{buffers_.scene(), broad.pairs(), motion, distance,

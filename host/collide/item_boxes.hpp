@@ -14,7 +14,7 @@
 
 namespace tetwarp {
 
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class ItemBoxes {
  public:
@@ -34,9 +34,9 @@ class ItemBoxes {
     double extent = 0;
     for (int k = 0; k < 3; ++k) extent = std::max(extent, space.high[k] - space.low[k]);
     largest_ = std::ilogb(extent);
-    exec_.put(partners.boxes.data(), std::ssize(partners.boxes), body_boxes_);
-    exec_.put(partners.start.data(), std::ssize(partners.start), partner_start_);
-    exec_.put(partners.bodies.data(), std::ssize(partners.bodies), partner_bodies_);
+    exec_.put(partners.boxes, body_boxes_);
+    exec_.put(partners.start, partner_start_);
+    exec_.put(partners.bodies, partner_bodies_);
     exec_.for_each(
         "collide/item_box", count_,
         ItemBoxBody{surfaces_.scene(), vertex_boxes, view(body_boxes_), view(partner_start_),

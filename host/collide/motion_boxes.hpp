@@ -12,7 +12,7 @@
 namespace tetwarp {
 
 /// Boxes of vertices, and their unions over runs of vertices up to one box for each body.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class MotionBoxes {
  public:

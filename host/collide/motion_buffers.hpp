@@ -12,14 +12,14 @@
 namespace tetwarp {
 
 /// Checks the sizes of motions. Copies them where an executor needs a copy.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class MotionBuffers {
  public:
   /// @param surfaces  kept by the caller
   MotionBuffers(Exec& exec, const CollisionSurfaces& surfaces) : exec_(exec), surfaces_(surfaces) {
     const std::vector<double> zeros(surfaces.vertex_body.size());
-    exec_.put(zeros.data(), std::ssize(zeros), no_sagitta_);
+    exec_.put(zeros, no_sagitta_);
   }
 
   /// @returns the motion, valid until the next call; motion.resident where that is given

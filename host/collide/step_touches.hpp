@@ -25,7 +25,7 @@ namespace tetwarp {
 ///   deformable one; else both points by half each.
 ///
 /// TouchChoice states which touches become contacts.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class StepTouches {
  public:
@@ -89,7 +89,7 @@ class StepTouches {
     const std::vector<FeatureTouch>* pairs = &known_.add(exec_.on_host(hits_.view(), host_hits_));
     if (pairs->empty()) pairs = &known_.of_rigid_bodies();
     if (pairs->empty()) return 0;
-    exec_.put(pairs->data(), std::ssize(*pairs), later_pairs_);
+    exec_.put(*pairs, later_pairs_);
     touches_.add_later(exec_.view(std::as_const(later_pairs_)), view_of(motion), pass_);
     exec_.wait();
     return std::ssize(*pairs);

@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class StillBodies {
  public:
@@ -19,7 +19,7 @@ class StillBodies {
   /// @param is_still  [bodies], or empty: none
   void set(std::span<const std::uint8_t> is_still) {
     host_.assign(is_still.begin(), is_still.end());
-    exec_.put(host_.data(), std::ssize(host_), own_);
+    exec_.put(host_, own_);
   }
 
   bool are_none() const { return host_.empty(); }

@@ -10,7 +10,7 @@
 namespace tetwarp {
 
 /// The stages of kernels/collide/sink_stages.hpp on an executor.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class SunkHits {
  public:

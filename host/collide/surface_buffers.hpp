@@ -12,20 +12,20 @@
 namespace tetwarp {
 
 /// Constant during a simulation.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class SurfaceBuffers {
  public:
   SurfaceBuffers(Exec& exec, const CollisionSurfaces& surfaces, const CollideItems& made)
       : exec_(exec) {
-    put(made.items, items_);
-    put(made.bodies, bodies_);
-    put(made.forbidden, forbidden_);
-    put(made.runs, runs_);
-    put(surfaces.vertex_body, vertex_body_);
-    put(surfaces.plane_body, plane_body_);
-    put(surfaces.vertex_radius, vertex_radius_);
-    put(surfaces.edge_radius, edge_radius_);
+    exec_.put(made.items, items_);
+    exec_.put(made.bodies, bodies_);
+    exec_.put(made.forbidden, forbidden_);
+    exec_.put(made.runs, runs_);
+    exec_.put(surfaces.vertex_body, vertex_body_);
+    exec_.put(surfaces.plane_body, plane_body_);
+    exec_.put(surfaces.vertex_radius, vertex_radius_);
+    exec_.put(surfaces.edge_radius, edge_radius_);
     const auto& edges = surfaces.edges;
     exec_.put(edges.empty() ? nullptr : edges[0].data(), 2 * std::ssize(edges), edges_);
     const auto& triangles = surfaces.triangles;
@@ -46,10 +46,6 @@ class SurfaceBuffers {
   template <class T>
   using Vector = typename Exec::template Vector<T>;
 
-  template <class T>
-  void put(const std::vector<T>& from, Vector<T>& to) {
-    exec_.put(from.data(), std::ssize(from), to);
-  }
   template <class T>
   View<const T> view(const Vector<T>& values) const {
     return exec_.view(values);

@@ -34,7 +34,7 @@ namespace tetwarp {
 /// contacts of a surface add up to the area that touches; of two meshes that touch, the finer one
 /// has the larger share. Contacts of edges and of round parts have none, nor have further contacts
 /// of a vertex whose normals differ by less than 45 degrees from a nearer one.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class TouchChoice {
  public:

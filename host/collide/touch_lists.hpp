@@ -10,7 +10,7 @@
 namespace tetwarp {
 
 /// Two capsules side by side have two more touches than their pair, at the ends of their overlap.
-/// @tparam Exec  CpuDetectExec or CudaDetectExec
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec>
 class TouchLists {
  public:

@@ -13,7 +13,7 @@
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
 #include "host/contact/solver_state.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_adhesion.hpp"
 
 namespace tetwarp {
@@ -146,7 +146,8 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
   if (device != nullptr) {
     device->evolve(body);
   } else {
-    contact_adhesion(CpuContactExec(1), body);
+    CpuExec exec(1, StageClocks::off);
+    contact_adhesion(exec, body);
   }
   return step;
 }
@@ -185,7 +186,8 @@ void ContactSolver::evolve(const ContactArrays& arrays,
   } else if (device != nullptr) {
     device->evolve(body);
   } else {
-    contact_adhesion(CpuContactExec(1), body);
+    CpuExec exec(1, StageClocks::off);
+    contact_adhesion(exec, body);
   }
 }
 

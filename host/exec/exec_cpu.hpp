@@ -1,41 +1,43 @@
 /// @file exec_cpu.hpp
-/// CpuExec: the operations of a pipeline on host threads. Results do not depend on the number of
-/// threads: every index writes its own output, scans and sorts are stable.
+/// CpuExec: the operations of all pipelines on host threads. Results do not depend on the number of
+/// threads: every index writes its own output, scans and sorts are stable, sums have one fixed
+/// tree, and lists are in the order of the indices that append to them.
 #pragma once
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "host/base/parallel.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/exec/host_buffer.hpp"
+#include "host/exec/host_copies.hpp"
+#include "host/exec/host_list.hpp"
+#include "host/exec/pair_sort.hpp"
 #include "kernels/base/cell_pair.hpp"
 #include "kernels/base/grouped_sums.hpp"
-#include "kernels/base/slice_bytes.hpp"
+#include "kernels/base/pair_limit.hpp"
 #include "kernels/base/stage_times.hpp"
 #include "kernels/base/view.hpp"
 
 namespace tetwarp {
 
-/// Executor for host threads, with the interface of CudaExec. Copies between host and device are
-/// no-ops: stages read and write the memory of the caller.
-class CpuExec {
+/// Executor for host threads, with the interface of CudaExec.
+class CpuExec : public HostCopies {
  public:
   template <class T>
-  using Buffer = HostBuffer<T>;
-  template <class T>
-  using PinnedBuffer = HostBuffer<T>;
-  template <class T>
-  struct Staged {};  ///< empty: the argument of upload() is read in place
+  using List = HostList<T>;
 
   /// The host can read results without waiting, so that lists are allocated at their exact size.
   static constexpr bool reads_are_free = true;
 
-  explicit CpuExec(int threads) : threads_(threads) {}
+  /// @param clocks  off: times() are empty
+  explicit CpuExec(int threads, StageClocks clocks = StageClocks::on)
+      : threads_(threads), clocks_(clocks) {}
 
   int threads() const { return threads_; }
   std::string device() const { return processor_name(); }
@@ -44,81 +46,73 @@ class CpuExec {
   struct Scope {};  ///< nothing to keep on the host
   /// Selects which of two steps in flight, 0 or 1, the following calls belong to. Every call
   /// returns when its work is done, so that there is nothing to wait for.
-  Scope enter(int flight) {
+  Scope enter(int flight = 0) {
     flight_ = flight;
     return {};
   }
-  void begin_compute(void*, bool) {}
-  void end_compute(bool) {}
-  void wait_computed() {}
-  void end_download() {}
-  void wait_delivered() {}
-  void drain() noexcept {}
 
-  /// Host memory for a stage to read: no copy.
   template <class T>
-  View<const T> resident(const char*, const T* host, std::int64_t size, Buffer<T>&) {
-    return {host, size};
-  }
-  template <class T>
-  View<const T> upload(const char*, const T* host, std::int64_t size, Staged<T>&) {
-    return {host, size};
-  }
-  /// Host memory for a stage to write: no copy.
-  template <class T>
-  T* writable(T* host, std::int64_t, Buffer<T>&) {
-    return host;
-  }
-  /// Copies writable() memory to the host: stages have written to it directly.
-  void download(const char*, const std::byte*, std::byte*, const SliceBytes&) {}
-  bool downloads_async(const void*) const { return true; }
-
-  /// Copies entries to the host after all preceding stages.
-  template <class T>
-  void read(View<const T> from, T* to) {
-    std::copy_n(from.data, from.size, to);
-  }
-  template <class T>
-  void fetch(View<const T> from, PinnedBuffer<T>& to) {
-    read(from, to.view(from.size).data);
-  }
-  template <class T>
-  void zero(const char* label, View<T> view) {
+  void zero(const char* label, View<T> view) const {
     const Clock clock(*this, label);
     std::memset(static_cast<void*>(view.data), 0, static_cast<std::size_t>(view.size) * sizeof(T));
   }
+  template <class T>
+  void copy(const char* label, View<const T> from, View<T> to) const {
+    const Clock clock(*this, label);
+    std::copy_n(from.data, from.size, to.data);
+  }
 
+  /// body(i) for i in [0, count), any order.
   template <class Body>
-  void for_each(const char* label, std::int64_t count, const Body& body) {
+  void for_each(const char* label, std::int64_t count, const Body& body) const {
     const Clock clock(*this, label);
     parallel_for(threads_for(count), count, body);
   }
-
+  /// body(0), by a single thread.
+  template <class Body>
+  void once(const char* label, const Body& body) const {
+    const Clock clock(*this, label);
+    body(0);
+  }
+  /// body.run(begin, end) over runs of [0, count), any order.
+  template <class Body>
+  void for_runs(const char* label, std::int64_t count, const Body& body) const {
+    const Clock clock(*this, label);
+    parallel_for(threads_for(count), parts_of(count, run_length), [&](std::int64_t run) {
+      body.template run<run_length>(run * run_length, std::min((run + 1) * run_length, count));
+    });
+  }
+  /// stage(begin, end) for parts of [0, count) of at most task_length indices, any order.
+  template <class Stage>
+  void for_ranges(const char* label, std::int64_t count, const Stage& stage) const {
+    const Clock clock(*this, label);
+    for_tasks(count,
+              [&](std::int64_t, std::int64_t begin, std::int64_t end) { stage(begin, end); });
+  }
   /// Calls body(segment, local, item) for every item of every segment: offsets[segment] + local =
   /// item. Items from `capacity` on are left out.
   template <class Body>
   void for_each_item(const char* label,
                      View<const std::int64_t> offsets,
                      std::int64_t capacity,
-                     const Body& body) {
+                     const Body& body) const {
     for_each_span(
         label, offsets, capacity,
         [&](std::int64_t segment, std::int64_t first, std::int64_t past, std::int64_t item) {
           for (; first < past; ++first, ++item) body(segment, first, item);
         });
   }
-
   /// Calls body(segment, first, past, item) for stretches of successive items of a segment, local
   /// numbers [first, past): offsets[segment] + first = item.
   template <class Body>
   void for_each_span(const char* label,
                      View<const std::int64_t> offsets,
                      std::int64_t capacity,
-                     const Body& body) {
+                     const Body& body) const {
     const Clock clock(*this, label);
     const std::int64_t segments = offsets.size - 1;
     const std::int64_t items = std::min(offsets[segments], capacity);
-    const std::int64_t chunks = (items + chunk_items - 1) / chunk_items;
+    const std::int64_t chunks = parts_of(items, chunk_items);
     parallel_tasks(threads_for(items), chunks, [&](std::int64_t chunk) {
       const std::int64_t end = std::min(items, (chunk + 1) * chunk_items);
       std::int64_t item = chunk * chunk_items;
@@ -132,9 +126,32 @@ class CpuExec {
     });
   }
 
+  /// Sum of body(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
+  template <class Sum, class Body>
+  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
+    return add_runs<Sum>(label, first, last, [&](std::int64_t begin, std::int64_t end) {
+      Sum sum{};
+      for (std::int64_t i = begin; i < end; ++i) sum += body(i);
+      return sum;
+    });
+  }
+  /// As sum(), into executor memory.
+  template <class Sum, class Body>
+  void sum_to(
+      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    *out = sum<Sum>(label, first, last, body);
+  }
+  /// The same of body.run(begin, end) over runs of at most 64 indices.
+  template <class Sum, class Body>
+  void sum_runs_to(
+      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    *out = add_runs<Sum>(label, first, last, [&](std::int64_t begin, std::int64_t end) {
+      return body.template run<run_length>(begin, end);
+    });
+  }
   /// Replaces values[i] by the sum of the values before it. The last entry becomes the total; its
   /// own value is ignored.
-  void exclusive_scan(const char* label, View<std::int64_t> values) {
+  void exclusive_scan(const char* label, View<std::int64_t> values) const {
     const Clock clock(*this, label);
     std::int64_t sum = 0;
     for (std::int64_t i = 0; i < values.size; ++i) {
@@ -143,7 +160,6 @@ class CpuExec {
       sum += value;
     }
   }
-
   /// Sums body(i) for i in [0, count), and calls body.finish(total, k) for k in [0, sum_group). The
   /// sums before each i are not stored.
   template <class Body>
@@ -154,115 +170,146 @@ class CpuExec {
     for (int k = 0; k < sum_group; ++k) body.finish(total, k);
   }
 
+  /// Replaces the list by what body(i, emit) appends for i in [0, count), in order of i:
+  /// emit(value) appends one, emit.tally(n) adds n to the list's tally.
+  /// @throws TooManyPairs  before memory is taken for more than `most` values
+  template <class Body, class T>
+  void append(const char* label,
+              std::int64_t count,
+              const Body& body,
+              HostList<T>& list,
+              std::int64_t most = unlimited) const {
+    const Clock clock(*this, label);
+    const std::int64_t tasks = parts_of(count, task_length);
+    if (static_cast<std::int64_t>(list.parts_.size()) < tasks) {
+      list.parts_.resize(static_cast<std::size_t>(tasks));
+    }
+    for_tasks(count, [&](std::int64_t task, std::int64_t begin, std::int64_t end) {
+      auto& part = list.parts_[static_cast<std::size_t>(task)];
+      part.values.clear();
+      part.tallied = 0;
+      const Body own = body;
+      for (std::int64_t i = begin; i < end; ++i) {
+        own(i, part);
+        check_count(static_cast<std::int64_t>(part.values.size()), most);
+      }
+    });
+    std::int64_t size = 0;
+    list.clear();
+    for (std::int64_t t = 0; t < tasks; ++t) {
+      auto& part = list.parts_[static_cast<std::size_t>(t)];
+      part.first = size;
+      size += static_cast<std::int64_t>(part.values.size());
+      list.tally_ += part.tallied;
+    }
+    check_count(size, most);
+    list.set_size(size);
+    T* const to = list.values().data;
+    parallel_tasks(threads_, tasks, [&](std::int64_t t) {
+      const auto& part = list.parts_[static_cast<std::size_t>(t)];
+      std::copy(part.values.begin(), part.values.end(), to + part.first);
+    });
+  }
+  /// Replaces the list by body(i) for i in [0, count).
+  template <class Body, class T>
+  void fill(const char* label, std::int64_t count, const Body& body, HostList<T>& list) const {
+    list.clear();
+    list.set_size(count);
+    const View<T> values = list.values();
+    for_each(label, count, [&](std::int64_t i) { values[i] = body(i); });
+  }
+
   /// Copies the first candidate_count[0] pairs that are not rejected, in order, and counts them.
   void select_valid(const char* label,
                     View<const CellPair> candidates,
                     View<const std::int64_t> candidate_count,
                     View<CellPair> pairs,
-                    View<std::int64_t> pair_count) {
+                    View<std::int64_t> pair_count) const {
     const Clock clock(*this, label);
     const std::int64_t count = std::min(candidate_count[0], candidates.size);
-    std::vector<std::int64_t> kept(static_cast<std::size_t>(threads_ + 1));
-    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
-      std::int64_t sum = 0;
-      for (std::int64_t i = begin; i < end; ++i) sum += candidates[i] != rejected_pair;
-      kept[static_cast<std::size_t>(part + 1)] = sum;
-    });
-    for (std::size_t p = 1; p < kept.size(); ++p) kept[p] += kept[p - 1];
-    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
-      std::int64_t to = kept[static_cast<std::size_t>(part)];
-      const std::int64_t past = kept[static_cast<std::size_t>(part + 1)];
-      for (std::int64_t i = begin; i < end && to < past; ++i) {
-        pairs[to] = candidates[i];
-        to += candidates[i] != rejected_pair;
-      }
-    });
-    pair_count[0] = kept.back();
+    pair_count[0] = copy_valid(threads_for(count), {candidates.data, count}, pairs);
   }
-
-  /// Stable radix sort by cell of the first pair_count[0] pairs.
+  /// Stable sort of the first pair_count[0] pairs by cell, of which the lowest `cell_bits` bits
+  /// count.
   void sort_pairs(const char* label,
                   View<CellPair> pairs,
                   View<const std::int64_t> pair_count,
                   int cell_bits) {
     const Clock clock(*this, label);
-    const std::int64_t count = pair_count[0];
-    scratch_.reserve(count);
-    CellPair* from = pairs.data;
-    CellPair* to = scratch_.view(count).data;
-    // As few passes as possible, with digits of about the same size.
-    const int passes = (cell_bits + radix_bits - 1) / radix_bits;
-    for (int pass = 0; pass < passes; ++pass) {
-      const int shift = 32 + cell_bits * pass / passes;
-      const int bits = 32 + cell_bits * (pass + 1) / passes - shift;
-      sort_digit(from, to, count, shift, bits);
-      std::swap(from, to);
-    }
-    if (from != pairs.data) std::copy_n(from, count, pairs.data);
+    sort_.sort(threads_for(pair_count[0]), {pairs.data, pair_count[0]}, cell_bits);
+  }
+  void sort_pairs(const char* label, HostList<CellPair>& list, int cell_bits) {
+    sort_pairs(label, list.values(), {&list.size_, 1}, cell_bits);
   }
 
   /// Adds the time from its construction to its destruction to the times of a label.
   class Clock {
    public:
-    Clock(CpuExec& exec, const char* label)
-        : exec_(exec), label_(label), start_(std::chrono::steady_clock::now()) {}
+    Clock(const CpuExec& exec, const char* label)
+        : times_(exec.clocks_ == StageClocks::on ? &exec.times_[exec.flight_] : nullptr),
+          label_(label) {
+      if (times_ != nullptr) start_ = std::chrono::steady_clock::now();
+    }
     ~Clock() {
+      if (times_ == nullptr) return;
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
-      exec_.times().add(label_, passed.count());
+      times_->add(label_, passed.count());
     }
     Clock(const Clock&) = delete;
     Clock& operator=(const Clock&) = delete;
 
    private:
-    CpuExec& exec_;
+    StageTimes* times_;
     const char* label_;
     std::chrono::steady_clock::time_point start_;
   };
 
  private:
-  int threads_for(std::int64_t count) const { return count > serial_below ? threads_ : 1; }
-
-  /// Calls work(part, begin, end) for the part of [0, count) of every thread; parts ascend.
-  template <class Work>
-  void for_each_part(std::int64_t count, const Work& work) {
-    parallel_tasks(threads_for(count), threads_, [&](std::int64_t part) {
-      work(static_cast<int>(part), count * part / threads_, count * (part + 1) / threads_);
-    });
-  }
-
-  /// One pass of the radix sort: stable, by `bits` bits from bit `shift` on.
-  void sort_digit(const CellPair* from, CellPair* to, std::int64_t count, int shift, int bits) {
-    const std::int64_t digits = std::int64_t{1} << bits;
-    const CellPair mask = static_cast<CellPair>(digits - 1);
-    places_.assign(static_cast<std::size_t>(digits * threads_), 0);
-    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
-      std::int64_t* place = places_.data() + digits * part;
-      for (std::int64_t i = begin; i < end; ++i) ++place[from[i] >> shift & mask];
-    });
-    std::int64_t sum = 0;
-    for (std::int64_t digit = 0; digit < digits; ++digit) {
-      for (int part = 0; part < threads_; ++part) {
-        std::int64_t& place = places_[static_cast<std::size_t>(digits * part + digit)];
-        const std::int64_t size = place;
-        place = sum;
-        sum += size;
-      }
-    }
-    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
-      std::int64_t* place = places_.data() + digits * part;
-      for (std::int64_t i = begin; i < end; ++i) to[place[from[i] >> shift & mask]++] = from[i];
-    });
-  }
-
-  static constexpr std::int64_t serial_below = 2048;  ///< with fewer items one thread is faster
+  static constexpr std::int64_t run_length = 64;  ///< indices that a sum adds in sequence
+  static constexpr std::int64_t task_length = 1024;
   static constexpr std::int64_t chunk_items = 4096;
-  static constexpr int radix_bits = 11;
+
+  static std::int64_t parts_of(std::int64_t count, std::int64_t length) {
+    return (count + length - 1) / length;
+  }
+  /// The one threshold for all loops: what the start of a thread costs.
+  int threads_for(std::int64_t count) const { return tetwarp::threads_for(threads_, count); }
+
+  template <class Work>
+  void for_tasks(std::int64_t count, const Work& work) const {
+    parallel_tasks(threads_, parts_of(count, task_length), [&](std::int64_t task) {
+      work(task, task * task_length, std::min(count, (task + 1) * task_length));
+    });
+  }
+
+  /// Sum of what run(begin, end) returns for runs of [first, last).
+  template <class Sum, class Run>
+  Sum add_runs(const char* label, std::int64_t first, std::int64_t last, const Run& run) {
+    const Clock clock(*this, label);
+    const std::int64_t runs = parts_of(last - first, run_length);
+    const auto run_sum = [&](std::int64_t r) {
+      const std::int64_t begin = first + r * run_length;
+      return run(begin, std::min(begin + run_length, last));
+    };
+    Sum total{};
+    const int threads = threads_for(last - first);
+    if (threads == 1) {
+      for (std::int64_t r = 0; r < runs; ++r) total += run_sum(r);
+      return total;
+    }
+    sums_.reserve(runs * static_cast<std::int64_t>(sizeof(Sum)));
+    Sum* const sums = reinterpret_cast<Sum*>(sums_.view(0).data);
+    parallel_for(threads, runs, [&](std::int64_t r) { new (sums + r) Sum(run_sum(r)); });
+    for (std::int64_t r = 0; r < runs; ++r) total += sums[r];
+    return total;
+  }
 
   int threads_;
-  StageTimes times_[2];  ///< per step in flight
+  StageClocks clocks_;
+  mutable StageTimes times_[2];  ///< per step in flight
   int flight_ = 0;
-  HostBuffer<CellPair> scratch_;
-  std::vector<std::int64_t> places_;  ///< of the sort, [thread][digit]
+  HostBuffer<std::byte> sums_;  ///< of runs
+  PairSort sort_;
 };
 
 }  // namespace tetwarp

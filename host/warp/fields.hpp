@@ -138,8 +138,8 @@ class WarpFields {
     const Progress silent;
     cell_raster(exec_, job, ProgressPart{silent, 0, 1});
     std::int32_t first;
-    exec_.read(rest_owners_.const_view(1),
-               &first);  // waits until the scratch memory is no longer in use
+    exec_.get(rest_owners_.const_view(1),
+              &first);  // waits until the scratch memory is no longer in use
     has_rest_ = true;
   }
 

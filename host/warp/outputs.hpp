@@ -80,7 +80,7 @@ class WarpOutputs {
   CellWindow window_of(View<const std::uint8_t> marks) {
     if (marks.size == 0) return {{0, 0}, {frame_.cells[1], frame_.cells[2]}};
     std::vector<std::uint8_t> marked(static_cast<std::size_t>(marks.size));
-    exec_.read(marks, marked.data());
+    exec_.get(marks, marked.data());
     CellWindow window{{frame_.cells[1], frame_.cells[2]}, {0, 0}};
     std::size_t line = 0;
     for (int ck = 0; ck < frame_.cells[2]; ++ck) {

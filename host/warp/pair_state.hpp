@@ -76,7 +76,7 @@ class PairState {
 
   StepCounters read_counters() {
     CounterMemory memory;
-    exec_.read(counters_.const_view(1), &memory);
+    exec_.get(counters_.const_view(1), &memory);
     StepCounters counters;
     for (std::int64_t k = 0; k < counter_words; ++k) {
       reinterpret_cast<std::int64_t*>(&counters)[k] = counter_word(memory, k);
@@ -87,7 +87,7 @@ class PairState {
   void take_totals(const StepCounters& counters) {
     if (has_bad_positions(counters.mesh.classes)) {
       std::vector<TetSetup> setups(static_cast<std::size_t>(tet_count()));
-      exec_.read(setups_.const_view(tet_count()), setups.data());
+      exec_.get(setups_.const_view(tet_count()), setups.data());
       throw_on_bad_positions(setups);
     }
     pair_total_ = counters.work.candidates;

@@ -131,8 +131,8 @@ class WarpSources {
         work.reserve(entries);
         volume_prefilter(exec_, view, tolerance, work.view(entries), to);
         Real first;
-        exec_.read(View<const Real>{to.data, 1},
-                   &first);  // waits until the scratch memory is no longer in use
+        exec_.get(View<const Real>{to.data, 1},
+                  &first);  // waits until the scratch memory is no longer in use
       }
       found.has_coefficients = true;
     }
@@ -175,7 +175,7 @@ class WarpSources {
     volume_uniform(exec_, view, tets, rest, sources_[s].reach.view(blocks), scratch.view(blocks),
                    extended_count.view(1));
     std::int64_t count = 0;
-    exec_.read(extended_count.const_view(1), &count);
+    exec_.get(extended_count.const_view(1), &count);
     if (count > 0) map.reach = sources_[s].reach.const_view(blocks);
     return map;
   }

@@ -71,8 +71,7 @@ class WarpTotals {
         TetSliceCountBody{pairs.tets(), pairs.rest(), frame, offsets.view(pairs.tet_count())});
     exec_.exclusive_scan("warp/setup", offsets.view(pairs.tet_count() + 1));
     std::int64_t slices = 0;
-    exec_.read(View<const std::int64_t>{offsets.const_view(0).data + pairs.tet_count(), 1},
-               &slices);
+    exec_.get(View<const std::int64_t>{offsets.const_view(0).data + pairs.tet_count(), 1}, &slices);
     std::vector<double> totals(static_cast<std::size_t>(components), 0.0);
     if (slices > 0) {
       Buffer<double> masses, total;
@@ -82,7 +81,7 @@ class WarpTotals {
                           TetSliceMassBody{pairs.tets(), pairs.rest(), frame, source, components,
                                            masses.view(slices * components)});
       sum({masses.view(0).data, PixelType::float64}, slices, components, total.view(components));
-      exec_.read(total.const_view(components), totals.data());
+      exec_.get(total.const_view(components), totals.data());
     }
     const double voxel = std::abs(determinant(geometry_.axes.source));
     for (const double total : totals) before_.push_back(total * voxel);

@@ -7,6 +7,10 @@
 
 namespace tetwarp {
 
+/// Whether an executor measures its stages, which costs two readings of a clock per stage, and two
+/// records of events on a device.
+enum class StageClocks { off, on };
+
 /// Sum of seconds by label. Labels are string literals of the stages: they are not copied.
 class StageTimes {
  public:

@@ -185,4 +185,10 @@ struct BlockAssembleBodyOf {
 
 using BlockAssembleBody = BlockAssembleBodyOf<Triple>;
 
+/// All blocks of the system.
+template <class Exec>
+void block_assemble(Exec& exec, const char* label, const BlockAssembleBody& body) {
+  exec.for_each(label, body.rows.upper.size, body);
+}
+
 }  // namespace tetwarp

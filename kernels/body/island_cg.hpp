@@ -9,6 +9,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/base/from_index.hpp"
 #include "kernels/base/plain_sums.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/body/row_product.hpp"
@@ -197,6 +198,22 @@ struct GradientMixBody {
   }
 };
 
+/// Of the stages below.
+TETWARP_HD constexpr const char* gradient_label() {
+  return "body/linear";
+}
+
+/// q = A p on rows [begin, end).
+/// @param curvature  out: p . q, in memory of the executor
+template <class Exec, class T>
+TETWARP_ANY_EXEC void island_product(Exec& exec,
+                                     const GradientArrays<T>& a,
+                                     std::int64_t begin,
+                                     std::int64_t end,
+                                     PlainSums<1>* curvature) {
+  exec.sum_to(gradient_label(), begin, end, IslandProductBody<T>{a}, curvature);
+}
+
 /// One iteration on rows [begin, end).
 template <class T>
 struct GradientIteration {
@@ -206,38 +223,50 @@ struct GradientIteration {
 
   template <class Exec>
   TETWARP_ANY_EXEC void run(Exec& exec) const {
-    exec.sum_to(begin, end, IslandProductBody<T>{a}, &scalars->curvature);
-    exec.once(GradientLengthBody{scalars});
-    exec.sum_to(begin, end, IslandStepBody<T>{a, &scalars->step}, &scalars->next);
-    exec.once(GradientMixBody{scalars});
-    exec.for_each(begin, end, IslandTurnBody<T>{a, &scalars->turn});
+    island_product(exec, a, begin, end, &scalars->curvature);
+    exec.once(gradient_label(), GradientLengthBody{scalars});
+    exec.sum_to(gradient_label(), begin, end, IslandStepBody<T>{a, &scalars->step}, &scalars->next);
+    exec.once(gradient_label(), GradientMixBody{scalars});
+    exec.for_each(gradient_label(), end - begin,
+                  FromIndex<IslandTurnBody<T>>{{a, &scalars->turn}, begin});
   }
 };
 
-/// @param exec  calls bodies for rows [begin, end); see CpuGradientExec for its functions
-/// @param scalars  in memory of the executor
-/// @param proceed  (std::int64_t iterations): whether to continue; called after reads of sums
+/// Runs iterations one by one: their sums are read after each.
+struct SingleIterations {
+  static constexpr std::int64_t most = 1;
+
+  template <class Exec, class Iteration>
+  TETWARP_ANY_EXEC void run(Exec& exec, std::int64_t, const Iteration& iteration) const {
+    iteration.run(exec);
+  }
+};
+
+/// @param scalars     in memory of the executor
+/// @param proceed     (std::int64_t iterations): whether to continue; called after reads of sums
+/// @param iterations  runs up to `most` of them between two reads of sums
 /// @pre begin and end do not separate the two rows of a rigid body
 ///
 /// Determinism: same bits for any number of threads; sums are trees that depend only on the rows.
-template <class T, class Exec, class Proceed>
+template <class T, class Exec, class Proceed, class Iterations = SingleIterations>
 TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
                                        const GradientArrays<T>& a,
                                        std::int64_t begin,
                                        std::int64_t end,
                                        const GradientOptions& options,
                                        GradientScalars* scalars,
-                                       const Proceed& proceed) {
+                                       const Proceed& proceed,
+                                       Iterations iterations = {}) {
   constexpr int max_runs = 60;
   constexpr double run_target = sizeof(T) == sizeof(float) ? 1e-4 : 0;  // of the first residual
   GradientEnd result;
   double before = 0;
   for (int run = 0; run < max_runs; ++run) {
-    exec.sum_to(begin, end, IslandStartBody<T>{a}, &scalars->start);
+    exec.sum_to(gradient_label(), begin, end, IslandStartBody<T>{a}, &scalars->start);
     const PlainSums<2> start = exec.load(&scalars->start);
     const double square = start.value[0], unit = start.value[1];
     if (unit == 0) {  // b = 0
-      exec.for_each(begin, end, GradientZeroBody<T>{a});
+      exec.for_each(gradient_label(), end - begin, FromIndex<GradientZeroBody<T>>{{a}, begin});
       result.residual = 0;
       result.is_converged = true;
       break;
@@ -246,18 +275,18 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
     result.is_converged = result.residual <= options.tolerance;
     if (result.is_converged || result.iterations >= options.max_iterations) break;
     if (run > 0 && !(square < 0.25 * before)) {  // no further progress
-      exec.sum_to(begin, end, GradientRoundingBody<T>{a}, &scalars->next);
+      exec.sum_to(gradient_label(), begin, end, GradientRoundingBody<T>{a}, &scalars->next);
       result.is_converged = square <= 16 * exec.load(&scalars->next).value[0];
       break;
     }
     before = square;
     const double target =
         max_of(0.5 * square_of(options.tolerance) * unit, square_of(run_target) * square);
-    exec.once(GradientBeginBody{scalars});
+    exec.once(gradient_label(), GradientBeginBody{scalars});
     while (result.iterations < options.max_iterations) {
       const std::int64_t count =
-          min_of(exec.iterations_at_once(), options.max_iterations - result.iterations);
-      exec.repeat(count, GradientIteration<T>{a, begin, end, scalars});
+          min_of(Iterations::most, options.max_iterations - result.iterations);
+      iterations.run(exec, count, GradientIteration<T>{a, begin, end, scalars});
       result.iterations += count;
       const GradientScalars now = exec.load(scalars);
       if (!(now.square.value[0] > target) || now.step == 0) break;

@@ -141,4 +141,10 @@ struct TetForceBody {
   }
 };
 
+/// Forces and turned gradients of all tetrahedra.
+template <class Exec>
+void tet_forces(Exec& exec, const char* label, const TetForceBody& body) {
+  exec.for_each(label, body.tets.count, body);
+}
+
 }  // namespace tetwarp

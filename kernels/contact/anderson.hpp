@@ -106,6 +106,11 @@ struct AndersonDecideBody {
   TETWARP_HD void operator()(std::int64_t) const { state->decide(); }
 };
 
+template <class Exec>
+TETWARP_ANY_EXEC void anderson_decide(Exec& exec, AndersonState* state) {
+  exec.once("contact/mix", AndersonDecideBody{state});
+}
+
 /// Anderson acceleration, type II, window 8 (Walker and Ni 2011), with the least squares in a
 /// diagonal metric. An image whose defect g(x) - x is more than twice the last one is rejected; the
 /// iteration then restarts from the image before it.
@@ -228,7 +233,7 @@ class AndersonMixer {
   }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->sums.value[2 * window])); }
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T> image) {
-    exec_.once("contact/mix", AndersonDecideBody{state_});
+    anderson_decide(exec_, state_);
     exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, columns_, image});
     // If the action is not read, the image counts as replaced, which is always correct.
     return exec_.load_without_sync(&state_->action, AndersonState::Action::combine) !=

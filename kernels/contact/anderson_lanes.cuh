@@ -2,6 +2,7 @@
 /// AndersonState::decide() by the lanes of one warp, with the same operations on every number.
 #pragma once
 #include "kernels/contact/anderson.hpp"
+#include "kernels/exec/island_exec.cuh"
 #include "kernels/exec/launch.hpp"
 
 namespace tetwarp {
@@ -55,6 +56,13 @@ __device__ __forceinline__ void decide_by_lanes(AndersonState& state, int lane) 
     state.set_factors(is_positive, x);
     state.finish();
   }
+}
+
+/// The stage "decide" within one launch.
+template <class Team>
+__device__ __forceinline__ void anderson_decide(IslandExec<Team>& exec, AndersonState* state) {
+  static_assert(sizeof(AndersonState::sums) <= sizeof(LargestSum));
+  exec.once_by_lanes([&](int lane) { decide_by_lanes(*state, lane); });
 }
 
 }  // namespace tetwarp

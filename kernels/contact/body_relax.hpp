@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/base/from_index.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/contact/contact_setup.hpp"
 
@@ -189,15 +190,6 @@ struct DiagonalBody {
   }
 };
 
-/// Shifts indices: index 0 of the stage is block `first` of the body.
-template <class Body>
-struct FromBlock {
-  Body body;
-  std::int64_t first;
-
-  TETWARP_HD void operator()(std::int64_t i) const { body(first + i); }
-};
-
 /// Runs one of the bodies above for blocks [first, last).
 ///
 /// Determinism: same bits on every back end with contraction off; contacts are gathered in order.
@@ -206,7 +198,7 @@ TETWARP_ANY_EXEC void body_relax(Exec& exec,
                                  std::int64_t first,
                                  std::int64_t last,
                                  const Body& body) {
-  exec.for_each("contact/relax", last - first, FromBlock<Body>{body, first});
+  exec.for_each("contact/relax", last - first, FromIndex<Body>{body, first});
 }
 
 }  // namespace tetwarp

@@ -9,10 +9,12 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "kernels/contact/anderson_lanes.cuh"
 #include "kernels/contact/contact_methods.hpp"
 #include "kernels/contact/island_cache.cuh"
-#include "kernels/contact/island_exec.cuh"
+#include "kernels/contact/thinned_event_log.cuh"
 #include "kernels/exec/exec_buffer.cuh"
+#include "kernels/exec/island_exec.cuh"
 
 namespace tetwarp {
 
@@ -56,7 +58,7 @@ struct IslandJob {
 template <class T, int threads>
 __global__ void __launch_bounds__(island_threads, island_blocks)
     contact_island_kernel(IslandJob<T> job) {
-  using Exec = IslandExec<threads>;
+  using Exec = ThreadsExec<threads>;
   constexpr int islands = island_threads / threads;
   const int own = static_cast<int>(threadIdx.x) / threads;
   const std::int64_t which = std::int64_t{blockIdx.x} * islands + own;
@@ -96,7 +98,7 @@ template <class T, int threads>
 std::int64_t shared_bytes_for(View<const IslandTask> tasks, bool is_local, std::int64_t most) {
   constexpr std::int64_t islands = island_threads / threads;
   const std::int64_t room =
-      (most / islands - static_cast<std::int64_t>(IslandExec<threads>::shared_bytes)) / 16 * 16;
+      (most / islands - static_cast<std::int64_t>(ThreadsExec<threads>::shared_bytes)) / 16 * 16;
   std::int64_t largest = 0;
   for (std::int64_t i = 0; i < tasks.size; ++i) {
     largest = std::max(largest, island_bytes<T>(tasks[i].island, tasks[i].arrays, is_local));
@@ -115,7 +117,7 @@ template <class T, int threads = island_threads>
 void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
   constexpr std::int64_t islands = island_threads / threads;
   const std::int64_t bytes =
-      islands * (static_cast<std::int64_t>(IslandExec<threads>::shared_bytes) + job.shared_bytes);
+      islands * (static_cast<std::int64_t>(ThreadsExec<threads>::shared_bytes) + job.shared_bytes);
   if (bytes > common_shared_bytes) {
     check_cuda(
         cudaFuncSetAttribute(reinterpret_cast<const void*>(&contact_island_kernel<T, threads>),
@@ -139,12 +141,12 @@ struct MeasureJob {
 };
 
 /// Blocks: one per island. Threads: island_threads. Shared:
-/// IslandExec<island_threads>::shared_bytes, dynamic. Registers: up to 128.
+/// IslandExec<BlockTeam>::shared_bytes, dynamic. Registers: up to 128.
 template <class T>
 __global__ void __launch_bounds__(island_threads, 4) contact_measure_kernel(MeasureJob<T> job) {
   const auto which = static_cast<std::int64_t>(blockIdx.x);
-  IslandExec<island_threads> exec(dynamic_shared<unsigned char>());
-  const IslandSums sums = measure_island(ContactPipeline<IslandExec<island_threads>, T>(
+  IslandExec<BlockTeam> exec(dynamic_shared<unsigned char>());
+  const IslandSums sums = measure_island(ContactPipeline<IslandExec<BlockTeam>, T>(
       exec, job.numbers, job.color_start, job.islands[which], job.switches, job.state));
   if (threadIdx.x == 0) job.sums[which] = sums;
 }
@@ -156,7 +158,7 @@ __global__ void __launch_bounds__(island_threads, 4) contact_measure_kernel(Meas
 template <class T>
 void contact_measure_islands(cudaStream_t stream, const MeasureJob<T>& job) {
   launch(stream, contact_measure_kernel<T>, dim3(static_cast<unsigned>(job.islands.size)),
-         dim3(island_threads), IslandExec<island_threads>::shared_bytes, job);
+         dim3(island_threads), IslandExec<BlockTeam>::shared_bytes, job);
 }
 
 }  // namespace tetwarp

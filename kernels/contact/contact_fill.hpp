@@ -239,7 +239,7 @@ ContactSavings fill_numbers(Exec& exec,
   const auto left_out = exec.template sum<PlainSums<2>>(label, 0, slots, constants);
   if (in.row_kind.size > 0) {
     typename Exec::template Vector<std::int32_t> places;
-    exec.resize(places, slots);
+    exec.make_zeros(places, slots);
     exec.for_each(label, slots, SlotOfContactBody{indices.contact_of_slot, view_of(places)});
     exec.for_each(label, slots,
                   RollingLinkBody{in, indices.contact_of_slot,

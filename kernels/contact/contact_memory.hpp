@@ -21,13 +21,13 @@ struct StateMemory {
 
   /// Zero impulses and the velocities without them; no contact frozen.
   void reset(Exec& exec, const ContactNumbers<T>& numbers, bool freezes) {
-    exec.resize(impulse, numbers.free_velocity.size);
-    exec.resize(velocity, numbers.free_velocity.size);
+    exec.make_zeros(impulse, numbers.free_velocity.size);
+    exec.make_zeros(velocity, numbers.free_velocity.size);
     exec.copy("contact/setup", numbers.free_velocity, view_of(velocity));
-    exec.resize(body_velocity, numbers.body_free.size);
+    exec.make_zeros(body_velocity, numbers.body_free.size);
     exec.copy("contact/setup", numbers.body_free, view_of(body_velocity));
-    exec.resize(unchanged_visits, freezes ? numbers.constants.size : 0);
-    exec.resize(skipped_visits, freezes ? numbers.constants.size : 0);
+    exec.make_zeros(unchanged_visits, freezes ? numbers.constants.size : 0);
+    exec.make_zeros(skipped_visits, freezes ? numbers.constants.size : 0);
   }
 
   ContactState<T> views() {

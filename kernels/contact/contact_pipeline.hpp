@@ -158,7 +158,7 @@ class ContactPipeline {
   template <class Body>
   TETWARP_ANY_EXEC void run_contacts(const Body& body) {
     exec_.for_each("contact/sweep", island_.contact_count(),
-                   FromContact<Body>{body, island_.slot_begin});
+                   FromIndex<Body>{body, island_.slot_begin});
   }
   TETWARP_ANY_EXEC void find_velocities() {
     if (numbers_.is_local) {

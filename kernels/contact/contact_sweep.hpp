@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/base/from_index.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/contact/contact_law.hpp"
 #include "kernels/contact/contact_setup.hpp"
@@ -236,15 +237,6 @@ struct ContactVelocityBody {
   }
 };
 
-/// Shifts indices: index 0 of the stage is contact `first` of the body.
-template <class Body>
-struct FromContact {
-  Body body;
-  std::int64_t first;
-
-  TETWARP_HD void operator()(std::int64_t i) const { body(first + i); }
-};
-
 /// Updates the impulse of every contact of an island once, color after color.
 ///
 /// Contacts are sorted by color, so the result equals that of a serial pass in their order.
@@ -261,7 +253,7 @@ TETWARP_ANY_EXEC void contact_sweep(Exec& exec,
                                     const Body& body) {
   for (std::int64_t k = 0; k + 1 < color_start.size; ++k) {
     exec.for_each("contact/sweep", color_start[k + 1] - color_start[k],
-                  FromContact<Body>{body, color_start[k]});
+                  FromIndex<Body>{body, color_start[k]});
   }
 }
 

@@ -33,16 +33,16 @@ struct SystemMemory {
   void resize(const Exec& exec, const ContactIndices& indices) {
     const bool is_local = indices.is_local;
     const auto global = [&](std::int64_t size) { return is_local ? 0 : size; };
-    exec.resize(constants, indices.slots());
-    exec.resize(free_velocity, 3 * indices.slots());
-    exec.resize(offset, global(3 * indices.slots()));
-    exec.resize(load, global(indices.dofs()));
-    exec.resize(jacobian, global(indices.jacobian_size));
-    exec.resize(response, global(indices.jacobian_size));
-    exec.resize(inverse, global(indices.inverse_size));
-    exec.resize(system, global(indices.system_size));
-    exec.resize(body_free, global(indices.dofs()));
-    exec.resize(delassus, is_local ? 9 * indices.delassus_column.size : 0);
+    exec.make_zeros(constants, indices.slots());
+    exec.make_zeros(free_velocity, 3 * indices.slots());
+    exec.make_zeros(offset, global(3 * indices.slots()));
+    exec.make_zeros(load, global(indices.dofs()));
+    exec.make_zeros(jacobian, global(indices.jacobian_size));
+    exec.make_zeros(response, global(indices.jacobian_size));
+    exec.make_zeros(inverse, global(indices.inverse_size));
+    exec.make_zeros(system, global(indices.system_size));
+    exec.make_zeros(body_free, global(indices.dofs()));
+    exec.make_zeros(delassus, is_local ? 9 * indices.delassus_column.size : 0);
   }
 
   /// The views that fill_numbers() writes.

@@ -6,13 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "kernels/base/stage_times.hpp"
 #include "kernels/exec/exec_stream.cuh"
 #include "kernels/exec/launch_list.cuh"
 
 namespace tetwarp {
-
-/// Whether stages are measured, which costs two records of events per launch or copy.
-enum class StageClocks { off, on };
 
 /// All work is enqueued and returns before it has run, unless stated. Two steps may be in flight:
 /// each has its own events and times; enter() chooses the current one. Without clocks the launches
@@ -21,7 +19,11 @@ class DeviceQueue {
  public:
   /// @param clocks  off: times() are empty
   /// @pre the device is current
-  DeviceQueue(int device, StageClocks clocks) : state_(std::make_unique<State>(device, clocks)) {}
+  DeviceQueue(int device, StageClocks clocks)
+      : state_(std::make_shared<State>(device)), clocks_(clocks) {}
+  /// The same streams and steps as another queue.
+  DeviceQueue(const DeviceQueue& other, StageClocks clocks)
+      : state_(other.state_), clocks_(clocks) {}
 
   int number() const { return state_->device; }
   std::string device() const {
@@ -39,7 +41,7 @@ class DeviceQueue {
 
   /// Makes `flight`, 0 or 1, the current step: all calls after it belong to that step. Initially 0.
   /// @returns  an object during whose life the device is the current one of this thread
-  DeviceScope enter(int flight) {
+  DeviceScope enter(int flight = 0) {
     state_->flight = &state_->flights[flight];
     return DeviceScope(state_->device);
   }
@@ -54,20 +56,24 @@ class DeviceQueue {
     state_->stream = next;
   }
 
-  /// To be called before the first kernel of the current step: its kernels wait for its upload().
-  /// @param has_device_memory  whether the step uses device memory of the caller: without a stream
-  ///                           of the caller its kernels wait for the default stream
-  void begin_compute(void* stream, bool has_device_memory) {
-    state_->launches.clear();  // of a step that failed
+  /// Later kernels run on the caller's stream; without one they wait for the default stream.
+  void follow(void* stream) {
     use_stream(stream);
-    if (flight().has_upload) flight().uploaded.make_wait(state_->stream);
-    if (stream == nullptr && has_device_memory &&
-        cudaStreamQuery(cudaStreamLegacy) != cudaSuccess) {
+    if (stream == nullptr && cudaStreamQuery(cudaStreamLegacy) != cudaSuccess) {
       cudaGetLastError();  // not ready is no error
       flight().given.record(cudaStreamLegacy);
       flight().given.make_wait(state_->stream);
     }
-    state_->is_collecting = state_->clocks == StageClocks::off;
+  }
+
+  /// To be called before the first kernel of the current step: its kernels wait for its upload().
+  /// @param has_device_memory  whether the step uses device memory of the caller
+  void begin_compute(void* stream, bool has_device_memory) {
+    state_->launches.clear();  // of a step that failed
+    use_stream(stream);
+    if (flight().has_upload) flight().uploaded.make_wait(state_->stream);
+    if (has_device_memory) follow(stream);
+    state_->is_collecting = clocks_ == StageClocks::off;
   }
   /// To be called after the last kernel of the current step.
   /// @param has_download  whether downloads will follow
@@ -99,6 +105,8 @@ class DeviceQueue {
     if (std::exchange(flight().has_delivery, false)) flight().delivered.wait();
   }
 
+  /// Waits for the kernels on stream().
+  void wait() const { check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize"); }
   /// Waits for all enqueued work and ignores its errors.
   void drain() noexcept {
     state_->launches.clear();
@@ -142,14 +150,13 @@ class DeviceQueue {
   cudaStream_t download_stream() const { return state_->download; }
   template <class Work>
   void timed(const char* label, cudaStream_t on, Work&& work) {
-    if (state_->clocks == StageClocks::off) return work();
+    if (clocks_ == StageClocks::off) return work();
     flight().timed(label, on, std::forward<Work>(work));
   }
 
  private:
   struct State {
     int device;
-    StageClocks clocks;
     DeviceStream own_stream, upload, download;
     DeviceFlight flights[2];
     cudaStream_t stream = own_stream;
@@ -158,7 +165,7 @@ class DeviceQueue {
     LaunchList launches;  ///< collected and not made yet
     LaunchGraphs graphs;
 
-    State(int number, StageClocks with) : device(number), clocks(with) {}
+    explicit State(int number) : device(number) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
   };
@@ -169,7 +176,8 @@ class DeviceQueue {
     for (const auto& one : launches) one->launch_on(state_->stream);
   }
 
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;
+  StageClocks clocks_;
 };
 
 }  // namespace tetwarp

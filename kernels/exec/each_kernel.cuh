@@ -10,6 +10,11 @@ namespace tetwarp {
 
 constexpr int each_threads = 256;  ///< threads per block
 
+/// Blocks for `count` indices.
+inline dim3 each_blocks(std::int64_t count) {
+  return dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads));
+}
+
 /// Minimum blocks per multiprocessor, which bounds registers per thread: Body::resident_blocks
 /// where the default of ptxas spills registers, else 0 for that default.
 template <class Body>
@@ -24,6 +29,14 @@ __global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
   const std::int64_t i = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
   if (i < count) body(i);
 }
+
+/// One index = one run of one entry.
+template <class Body>
+struct SingleRuns {
+  Body body;
+
+  TETWARP_HD auto operator()(std::int64_t i) const { return body.template run<1>(i, i + 1); }
+};
 
 /// One index = one byte.
 struct ZeroBody {

@@ -1,19 +1,19 @@
 /// @file exec_cuda.cuh
-/// CudaExec: the executor of stages and pipelines on one device: its memory, copies and loops.
+/// CudaExec: the executor of stages and pipelines on one device: its loops, sums, sorts and lists.
 #pragma once
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <string>
-#include <utility>
 
 #include "kernels/base/cell_pair.hpp"
+#include "kernels/base/pair_limit.hpp"
 #include "kernels/base/view.hpp"
-#include "kernels/exec/device_queue.cuh"
+#include "kernels/exec/device_copies.cuh"
+#include "kernels/exec/device_list.cuh"
 #include "kernels/exec/each_kernel.cuh"
-#include "kernels/exec/exec_buffer.cuh"
+#include "kernels/exec/grid_sum.cuh"
 #include "kernels/exec/grouped_scan.cuh"
 #include "kernels/exec/launch.hpp"
+#include "kernels/exec/part_graphs.cuh"
 
 namespace tetwarp {
 
@@ -28,110 +28,54 @@ void cuda_sort_pairs(cudaStream_t stream,
                      int cell_bits);
 
 /// Runs stages on one device. All work is enqueued and returns before it has run, unless stated.
-class CudaExec : public DeviceQueue {
+/// Sums have one fixed tree: blocks of sum_threads threads sum runs of sum_run terms, then one
+/// block sums these.
+class CudaExec : public DeviceCopies {
  public:
   template <class T>
-  using Buffer = DeviceBuffer<T>;
-  template <class T>
-  using PinnedBuffer = tetwarp::PinnedBuffer<T>;
-  template <class T>
-  struct Staged {
-    PinnedBuffer<T> host;
-    Buffer<T> device;
-  };
+  using List = DeviceList<T>;
 
   /// Whether the host can read executor memory without waiting. On a device it cannot: pipelines
   /// read sizes once, then launch over the capacities of their buffers.
   static constexpr bool reads_are_free = false;
 
-  /// Arrays of a step that are read once from the host's memory instead of being copied first.
-  static constexpr std::size_t most_bytes_in_place = std::size_t{1} << 16;
-
   /// @param clocks  off: times() are empty
   /// @pre the device is current
   explicit CudaExec(int device, StageClocks clocks = StageClocks::on)
-      : DeviceQueue(device, clocks) {}
+      : DeviceCopies(device, clocks) {}
+  /// An executor on the streams of another one, which may have other clocks. Its memory for sums
+  /// and states is its own.
+  CudaExec(const CudaExec& other, StageClocks clocks) : DeviceCopies(other, clocks) {}
 
-  /// Copies a host array to the device, into `buffer`, on the stream of kernels.
-  /// @param size  number of elements, here and below
-  template <class T>
-  View<const T> resident(const char* label, const T* host, std::int64_t size, Buffer<T>& buffer) {
-    buffer.reserve(size);
-    timed(label, [&] {
-      check_cuda(cudaMemcpyAsync(buffer.view(size).data, host, bytes_of<T>(size),
-                                 cudaMemcpyHostToDevice, stream()),
-                 "cudaMemcpyAsync to device");
-    });
-    return buffer.const_view(size);
-  }
-  /// Copies `host` to pinned memory before it returns, and from there to the device on the upload
-  /// stream, concurrently with kernels of earlier steps. Kernels read few bytes from pinned memory
-  /// in place: that takes no longer than a copy.
-  template <class T>
-  View<const T> upload(const char* label, const T* host, std::int64_t size, Staged<T>& staged) {
-    staged.host.reserve(size);
-    std::copy_n(host, size, staged.host.view(size).data);
-    flight().has_upload = bytes_of<T>(size) > most_bytes_in_place;
-    if (!flight().has_upload) return staged.host.const_view(size);
-    staged.device.reserve(size);
-    DeviceQueue::timed(label, upload_stream(), [&] {
-      check_cuda(cudaMemcpyAsync(staged.device.view(size).data, staged.host.view(size).data,
-                                 bytes_of<T>(size), cudaMemcpyHostToDevice, upload_stream()),
-                 "cudaMemcpyAsync to device");
-    });
-    flight().uploaded.record(upload_stream());
-    return staged.device.const_view(size);
-  }
-  /// Memory of `size` elements that stages write to; the CPU's executor returns the first argument.
-  template <class T>
-  T* writable(T*, std::int64_t size, Buffer<T>& buffer) {
-    buffer.reserve(size);
-    return buffer.view(size).data;
-  }
-  /// Copies results of the current step to the host after end_compute(true), concurrently with
-  /// kernels of the next step: the same bytes of each of `slices` slices. Returns before the copy
-  /// is done if downloads_async(to).
-  /// @param from, to  first byte to copy
-  void download(const char* label, const std::byte* from, std::byte* to, const SliceBytes& part) {
-    if (!std::exchange(flight().is_awaited, true)) flight().computed.make_wait(download_stream());
-    DeviceQueue::timed(label, download_stream(),
-                       [&] { copy_slices(from, to, part, download_stream()); });
-  }
-  /// Whether download() to this address returns at once: true for page-locked memory.
-  bool downloads_async(const void* to) const {
-    cudaPointerAttributes attributes;
-    check_cuda(cudaPointerGetAttributes(&attributes, to), "cudaPointerGetAttributes");
-    return attributes.type == cudaMemoryTypeHost;
-  }
-  /// As read(), but without waiting: `to` is valid after wait_computed().
-  template <class T>
-  void fetch(View<const T> from, PinnedBuffer<T>& to) {
-    check_cuda(cudaMemcpyAsync(to.view(from.size).data, from.data, bytes_of<T>(from.size),
-                               cudaMemcpyDeviceToHost, stream()),
-               "cudaMemcpyAsync to host");
-  }
-  /// Copies device memory to the host and waits for it.
-  template <class T>
-  void read(View<const T> from, T* to) {
-    check_cuda(
-        cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost, stream()),
-        "cudaMemcpyAsync to host");
-    check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize");
-  }
   /// Sets few bytes to zero, by a kernel, so that it may be part of a graph.
   template <class T>
   void zero(const char* label, View<T> view) {
-    for_each(label, static_cast<std::int64_t>(bytes_of<T>(view.size)),
-             ZeroBody{{reinterpret_cast<std::uint8_t*>(view.data),
-                       static_cast<std::int64_t>(bytes_of<T>(view.size))}});
+    const auto bytes = static_cast<std::int64_t>(bytes_of<T>(view.size));
+    for_each(label, bytes, ZeroBody{{reinterpret_cast<std::uint8_t*>(view.data), bytes}});
   }
-
   /// Calls body(i) for i in [0, count), in any order.
   template <class Body>
   void for_each(const char* label, std::int64_t count, const Body& body) {
     if (count == 0) return;
-    enqueue(label, each_kernel<Body>, blocks_for(count), each_threads, 0, count, body);
+    enqueue(label, each_kernel<Body>, each_blocks(count), each_threads, 0, count, body);
   }
+  template <class Body>
+  void for_runs(const char* label, std::int64_t count, const Body& body) {
+    for_each(label, count, SingleRuns<Body>{body});
+  }
+  template <class Body>
+  void once(const char* label, const Body& body) {
+    for_each(label, 1, body);
+  }
+  /// Calls body(i) for i in [part_start[k], part_start[k + 1]), one part after the other: a CUDA
+  /// graph, recorded at the first call and launched again after it. Not measured.
+  /// @param part_start  in memory of the host
+  template <class Body>
+  void for_each_part(View<const std::int64_t> part_start, const Body& body) {
+    part_graphs_.launch(stream(), part_start, body);
+  }
+  /// Drops the recorded graphs; to be called when the arrays they read have moved.
+  void forget_parts() { part_graphs_.clear(); }
   /// Calls body(s, item - offsets[s], item) for every item of segments s, which are the ranges
   /// [offsets[s], offsets[s + 1]), in any order. Items from `capacity` on are left out.
   /// @tparam Offsets  View<const std::int64_t> or GroupedSums
@@ -141,8 +85,38 @@ class CudaExec : public DeviceQueue {
                      std::int64_t capacity,
                      const Body& body) {
     if (capacity == 0) return;
-    enqueue(label, each_item_kernel<Offsets, Body>, blocks_for(capacity), each_threads, 0, offsets,
+    enqueue(label, each_item_kernel<Offsets, Body>, each_blocks(capacity), each_threads, 0, offsets,
             capacity, body);
+  }
+
+  /// Memory for sums of so many terms: launches that are recorded must not take it.
+  template <class Sum>
+  void reserve_sums(std::int64_t terms) {
+    sums_.reserve(runs_of(terms) * static_cast<std::int64_t>(sizeof(Sum)));
+  }
+  /// Sum of body(i) for i in [first, last); synchronizes.
+  template <class Sum, class Body>
+  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
+    if (first == last) return {};
+    total_.reserve(sizeof(Sum));
+    Sum* const total = reinterpret_cast<Sum*>(total_.view(0).data);
+    sum_to(label, first, last, body, total);
+    return load(total);
+  }
+  /// As sum(), without a wait. Not measured: events would take as long as the launches.
+  /// @param out  in memory of the device
+  template <class Sum, class Body>
+  void sum_to(const char*, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    const std::int64_t runs = runs_of(last - first);
+    reserve_sums<Sum>(last - first);
+    const View<Sum> sums = {reinterpret_cast<Sum*>(sums_.view(0).data), runs};
+    if (runs > 0) launch_sums(first, last, sum_run, body, sums);
+    launch_sums(0, runs, runs, ReadySums<Sum>{sums}, View<Sum>{out, 1});
+  }
+  template <class Sum, class Body>
+  void sum_runs_to(
+      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    sum_to(label, first, last, SingleRuns<Body>{body}, out);
   }
   /// Sums body(i) for i in [0, count), and calls body.finish(total, k) for k in [0, sum_group).
   /// A body with a constant `lanes` is called by so many lanes together.
@@ -160,6 +134,37 @@ class CudaExec : public DeviceQueue {
     timed(label, [&] { cuda_exclusive_scan(stream(), scratch_, values); });
   }
 
+  /// Replaces the list by what body(i, emit) appends; see CpuExec::append(). Runs the body twice:
+  /// to count, and to write. Waits for the counts.
+  template <class Body, class T>
+  void append(const char* label,
+              std::int64_t count,
+              const Body& body,
+              DeviceList<T>& list,
+              std::int64_t most = unlimited) {
+    list.clear();
+    if (count == 0) return;
+    list_sums_.resize(2 * count + 1);
+    list_totals_.resize(2);
+    std::int64_t* const sums = list_sums_.view().data;
+    for_each(label, count, AppendCountBody<Body>{body, {sums, count}, {sums + count, count}});
+    exclusive_scan(label, list_sums_.view());
+    for_each(label, 1, AppendTotalsBody{list_sums_.view(), list_totals_.view()});
+    std::int64_t totals[2];
+    get(View<const std::int64_t>(list_totals_.view()), totals);
+    check_count(totals[0], most);
+    list.tally_ = totals[1];
+    list.set_size(totals[0]);
+    for_each(label, list.size_ == 0 ? 0 : count,
+             AppendWriteBody<Body, T>{body, list_sums_.view(), list.values()});
+  }
+  /// Replaces the list by body(i) for i in [0, count).
+  template <class Body, class T>
+  void fill(const char* label, std::int64_t count, const Body& body, DeviceList<T>& list) {
+    list.clear();
+    list.set_size(count);
+    for_each(label, count, ListFillBody<Body, T>{body, list.values()});
+  }
   /// Sorts by cell, of which the lowest `cell_bits` bits count; stable.
   void sort_pairs(const char* label,
                   View<CellPair> pairs,
@@ -171,8 +176,22 @@ class CudaExec : public DeviceQueue {
       cuda_sort_pairs(stream(), scratch_, pairs, other_pairs_.view(pairs.size), cell_bits);
     });
   }
+  void sort_pairs(const char* label, DeviceList<CellPair>& list, int cell_bits) {
+    sort_pairs(label, list.values(), {}, cell_bits);
+  }
 
  private:
+  static std::int64_t runs_of(std::int64_t terms) { return (terms + sum_run - 1) / sum_run; }
+
+  template <class Sum, class Term>
+  void launch_sums(std::int64_t first,
+                   std::int64_t last,
+                   std::int64_t run,
+                   const Term& term,
+                   View<Sum> sums) const {
+    launch(stream(), sums_kernel<Sum, Term>, dim3(static_cast<unsigned>(sums.size)),
+           dim3(sum_threads), sum_warps * sizeof(Sum), first, last, run, term, sums);
+  }
   /// Zero at the start and at the end of each kernel that counts its blocks in it.
   unsigned* ticket() {
     if (!has_ticket_) {
@@ -183,16 +202,11 @@ class CudaExec : public DeviceQueue {
     }
     return ticket_.view(1).data;
   }
-  template <class T>
-  static std::size_t bytes_of(std::int64_t size) {
-    return static_cast<std::size_t>(size) * sizeof(T);
-  }
-  static dim3 blocks_for(std::int64_t count) {
-    return dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads));
-  }
 
-  DeviceBuffer<std::byte> scratch_;
+  DeviceBuffer<std::byte> scratch_, sums_, total_;
   DeviceBuffer<CellPair> other_pairs_;
+  DeviceVector<std::int64_t> list_sums_, list_totals_;  ///< of append()
+  PartGraphs part_graphs_;
   DeviceBuffer<unsigned> ticket_;
   bool has_ticket_ = false;
 };

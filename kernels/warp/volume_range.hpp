@@ -57,7 +57,7 @@ std::vector<ArithmeticOf<T>> volume_range(Exec& exec, const SourceView<T>& sourc
   buffer.reserve(parts * 2 * source.components);
   const View<Real> found = buffer.view(parts * 2 * source.components);
   exec.for_each("warp/setup", parts, VolumeRangeBody<T>{source, voxels, found});
-  exec.read(View<const Real>(found), ranges.data());
+  exec.get(View<const Real>(found), ranges.data());
   for (std::size_t r = entries; r < ranges.size(); ++r) {
     Real& bound = ranges[r % entries];
     bound = r % 2 == 0 ? min_of(bound, ranges[r]) : max_of(bound, ranges[r]);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "kernels/base/plain_sums.hpp"
 #include "tests/support/each_exec.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -22,6 +23,21 @@ struct PlaceBody {
     segments[item] += segment;
     locals[item] += local;
   }
+};
+
+/// Each third index appends itself, each ninth a second time; all tally one.
+struct ThirdsBody {
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    emit.tally(1);
+    if (i % 3 == 0) emit(i);
+    if (i % 9 == 0) emit(-i);
+  }
+};
+
+struct EntryBody {
+  View<const double> values;
+  TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{values[i]}}; }
 };
 
 namespace {
@@ -109,6 +125,51 @@ TYPED_TEST(Executor, ScanSumsWhatLiesBeforeAndIgnoresTheLastEntry) {
   }
 }
 
+TYPED_TEST(Executor, SumAddsEveryEntryOfItsRange) {
+  for (const std::int64_t size : {0, 1, 31, 32, 33, 1025, 5000}) {
+    std::vector<double> values(static_cast<std::size_t>(size));
+    std::iota(values.begin(), values.end(), 1.0);
+    const EntryBody body{this->upload(values)};
+    const std::int64_t first = std::min<std::int64_t>(size, 3);
+    const auto sum = this->exec().template sum<PlainSums<1>>("test", first, size, body);
+
+    EXPECT_EQ(sum.value[0], std::accumulate(values.begin() + first, values.end(), 0.0));
+  }
+}
+
+TYPED_TEST(Executor, ListsAreInTheOrderOfWhatAppends) {
+  typename TypeParam::template List<std::int64_t> list;
+  for (const std::int64_t size : {5000, 0, 1, 31, 32, 33, 1025}) {
+    std::vector<std::int64_t> expected;
+    for (std::int64_t i = 0; i < size; i += 3) {
+      expected.push_back(i);
+      if (i % 9 == 0) expected.push_back(-i);
+    }
+
+    this->exec().append("test", size, ThirdsBody{}, list);
+
+    EXPECT_EQ(this->download(list.view()), expected);
+    EXPECT_EQ(list.tally(), size);
+    const auto count = static_cast<std::int64_t>(expected.size());
+    EXPECT_NO_THROW(this->exec().append("test", size, ThirdsBody{}, list, count));
+    if (size == 0) continue;
+    EXPECT_THROW(this->exec().append("test", size, ThirdsBody{}, list, count - 1), TooManyPairs);
+  }
+}
+
+TYPED_TEST(Executor, VectorsHoldWhatIsPutUntilTheyAreMadeZero) {
+  typename TypeParam::template Vector<std::int64_t> values;
+  const std::vector<std::int64_t> numbers = {3, 1, 4, 1, 5};
+  this->exec().put(numbers.data(), 5, values);
+  EXPECT_EQ(this->download(this->exec().view(values)), numbers);
+
+  this->exec().make_zeros(values, 7);
+  EXPECT_EQ(this->download(this->exec().view(values)), std::vector<std::int64_t>(7));
+
+  this->exec().resize(values, 2);
+  EXPECT_EQ(this->exec().view(values).size, 2);
+}
+
 TEST(ExecutorCpu, SelectKeepsValidPairsInTheirOrder) {
   CpuExec exec(2);
   for (const std::int64_t size : tricky_sizes) {
@@ -182,6 +243,16 @@ TYPED_TEST(Executor, ChargesTimeToTheLabelUntilCleared) {
   EXPECT_EQ(this->exec().times().of("test/other"), 0);
   this->exec().times().clear();
   EXPECT_EQ(this->exec().times().of("test/square"), 0);
+}
+
+TEST(ExecutorCpu, SumsAreTheSameForAnyNumberOfThreads) {
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < 5000; ++i) values.push_back(scenes::uniform(11, i));
+  const EntryBody body{{values.data(), std::ssize(values)}};
+  const double one = CpuExec(1).sum<PlainSums<1>>("test", 7, 5000, body).value[0];
+
+  EXPECT_EQ(CpuExec(2).sum<PlainSums<1>>("test", 7, 5000, body).value[0], one);
+  EXPECT_EQ(CpuExec(7).sum<PlainSums<1>>("test", 7, 5000, body).value[0], one);
 }
 
 TEST(ExecutorCpu, SortsTheSameForAnyNumberOfThreads) {

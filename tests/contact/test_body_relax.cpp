@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/body_relax.hpp"
 #include "tests/support/contact_samples.hpp"
 #include "tests/support/contact_stages.hpp"
@@ -101,7 +101,7 @@ struct Relaxation {
   VectorXd load, impulse, velocity;
 };
 
-const CpuContactExec exec(1);
+const CpuExec exec(1);
 
 /// Problems whose blocks are all nodes use separate code.
 TEST(BodyRelax, ProductsAreTheSameWhetherOnlyNodesAreKnownOrNot) {
@@ -254,8 +254,8 @@ TEST(BodyRelax, HasTheSameBitsInAnyOrderAndForAnyNumberOfThreads) {
 
   EXPECT_NE(one, start);
   EXPECT_EQ(step(ReversedExec{}), one);
-  EXPECT_EQ(step(CpuContactExec(2)), one);
-  EXPECT_EQ(step(CpuContactExec(3)), one);
+  EXPECT_EQ(step(CpuExec(2)), one);
+  EXPECT_EQ(step(CpuExec(3)), one);
 }
 }  // namespace
 }  // namespace tetwarp::test

@@ -13,7 +13,7 @@
 
 #include "host/contact/structure/color.hpp"
 #include "host/contact/structure/islands.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_components.hpp"
 #include "tests/support/contact_samples.hpp"
 #include "tests/support/contact_stages.hpp"
@@ -222,7 +222,7 @@ TEST(ContactComponents, AreThoseOfASearchInAnyOrder) {
     const Lists lists = random_groups(53, size, 700);
     const std::vector<std::int32_t> expected = searched_components(lists, 700);
     EXPECT_EQ(HostStages().lowest_connected(lists, 700), expected) << size << " lists";
-    CpuContactExec in_order(1), in_parallel(3);
+    CpuExec in_order(1), in_parallel(3);
     ReversedExec reversed;
     const auto expect_found = [&](auto& exec) {
       std::vector<std::int32_t> lowest(700);

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "host/contact/block_jacobi/coupled_system.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "tests/support/contact_samples.hpp"
 #include "tests/support/contact_stages.hpp"
 #include "tests/support/elastic_block.hpp"
@@ -46,7 +46,7 @@ struct LinearCase {
   std::mt19937 random;
   Eigen::MatrixXd matrix;
   VectorXd goal;
-  mutable CoupledSystemMemory<CpuContactExec> memory;  ///< of one solver at a time
+  mutable CoupledSystemMemory<CpuExec> memory;  ///< of one solver at a time
 };
 
 /// Coupled bodies of six dofs.
@@ -55,9 +55,9 @@ LinearCase bodies(double coupling) {
   return LinearCase(samples::random_global(random, 30, 6, coupling, 0.3));
 }
 
-using Linear = CoupledSystem<CpuContactExec>;
+using Linear = CoupledSystem<CpuExec>;
 
-Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
+Linear make_linear(CpuExec& exec, const LinearCase& c) {
   return Linear(exec, c.stages.numbers(), c.stages.island(), c.memory);
 }
 
@@ -65,7 +65,7 @@ TEST(CoupledSystem, ReducesTheErrorToTheRequestedShare) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = samples::solve_spd(c.matrix, c.goal);
   const double size = c.size_of(exact);
-  CpuContactExec exec(1);
+  CpuExec exec(1);
   Linear linear = make_linear(exec, c);
   for (const double share : {1e-1, 1e-4, 1e-8}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
@@ -87,7 +87,7 @@ TEST(CoupledSystem, EstimatesItsErrorFromAboveAndTightly) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
                               LinearCase(make_elastic_problem({.young = 1e7}))};
   for (const LinearCase& c : cases) {
-    CpuContactExec exec(1);
+    CpuExec exec(1);
     Linear linear = make_linear(exec, c);
     std::mt19937 random(143);
     const auto dofs = c.goal.size();
@@ -114,7 +114,7 @@ TEST(CoupledSystem, EstimatesItsErrorFromAboveAndTightly) {
 TEST(CoupledSystem, StopsWhenTheCriterionHolds) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = samples::solve_spd(c.matrix, c.goal);
-  CpuContactExec exec(1);
+  CpuExec exec(1);
   Linear linear = make_linear(exec, c);
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
@@ -127,7 +127,7 @@ TEST(CoupledSystem, AcceptsLoadsWhoseSquaresUnderflow) {
   LinearCase c = bodies(0.4);
   for (const double scale : {1e-150, 1e-155, 1e-160, 1e-165, 1e-300, 0.0}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal * scale);
-    CpuContactExec exec(1);
+    CpuExec exec(1);
     Linear linear = make_linear(exec, c);
 
     EXPECT_NO_THROW(linear.solve(view_of(x), view_of(rest), [](const LinearProgress&) {
@@ -142,7 +142,7 @@ TEST(CoupledSystem, AcceptsLoadsWhoseSquaresUnderflow) {
 /// does not.
 TEST(CoupledSystem, RefusesASystemThatIsNotPositiveDefinite) {
   const LinearCase c = bodies(2);
-  CpuContactExec exec(1);
+  CpuExec exec(1);
   Linear linear = make_linear(exec, c);
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 

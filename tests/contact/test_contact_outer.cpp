@@ -96,7 +96,7 @@ TEST(BlockJacobi, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactOptions options = {.tolerance = 1e-9,
                                   .expert = {.relaxation = 1, .inner_sweeps = 2000}};
   const ContactStages stages(problem, options);
-  CpuContactExec exec(1);
+  CpuExec exec(1);
   const CoupledTask task{options,
                          stages.island(),
                          view_of(stages.structure.color_start),
@@ -104,9 +104,9 @@ TEST(BlockJacobi, IsExactInOneStepWhereNothingIsCoupled) {
                          {},
                          {},
                          1};
-  BlockJacobiMemory<CpuContactExec> memory;
-  ResidualEstimator<CpuContactExec> estimator(exec, task, memory.estimator);
-  BlockJacobi<CpuContactExec> block_jacobi(exec, task, estimator, memory.fine);
+  BlockJacobiMemory<CpuExec> memory;
+  ResidualEstimator<CpuExec> estimator(exec, task, memory.estimator);
+  BlockJacobi<CpuExec> block_jacobi(exec, task, estimator, memory.fine);
   const std::vector<double> no_impulse(problem.velocity_offset.size(), 0.0);
   const std::vector<double> no_velocity(problem.load.size(), 0.0);
   IslandOutcome outcome;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/contact/sweeps/run.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "host/reference/contact/dense.hpp"
 #include "kernels/contact/contact_sweep.hpp"
 #include "tests/support/contact_samples.hpp"
@@ -86,9 +86,9 @@ TEST_P(ContactSweep, HasTheBitsOfTheSequence) {
       0, static_cast<std::int64_t>(stages.system.constants.size())};
   ASSERT_LT(stages.colors().size, 6);
   for (const ContactOptions& options : variants) {
-    const Swept sequence = sweep(CpuContactExec(1), stages, options, view_of(one_run), 5);
+    const Swept sequence = sweep(CpuExec(1), stages, options, view_of(one_run), 5);
 
-    EXPECT_EQ(sweep(CpuContactExec(1), stages, options, stages.colors(), 5), sequence);
+    EXPECT_EQ(sweep(CpuExec(1), stages, options, stages.colors(), 5), sequence);
     EXPECT_EQ(sweep(ReversedExec{}, stages, options, stages.colors(), 5), sequence);
     EXPECT_NE(sweep(ReversedExec{}, stages, options, view_of(one_run), 5), sequence);
   }
@@ -111,7 +111,7 @@ TEST_P(ContactSweep, FollowsTheDenseDelassusMatrix) {
         }
       }
 
-      const Swept swept = sweep(CpuContactExec(1), stages, options, stages.colors(), 4);
+      const Swept swept = sweep(CpuExec(1), stages, options, stages.colors(), 4);
 
       const std::vector<double> expected =
           placed(samples::list_of(impulse), stages.structure.contact_of_slot, 3);
@@ -143,10 +143,10 @@ TEST_P(ContactSweep, HasTheSameBitsForAnyNumberOfThreads) {
     }
     problem.friction.assign(static_cast<std::size_t>(size), 0.5);
     const ContactStages stages(problem);
-    const Swept one = sweep(CpuContactExec(1), stages, {}, stages.colors(), 2);
+    const Swept one = sweep(CpuExec(1), stages, {}, stages.colors(), 2);
 
-    EXPECT_EQ(sweep(CpuContactExec(2), stages, {}, stages.colors(), 2), one) << size;
-    EXPECT_EQ(sweep(CpuContactExec(3), stages, {}, stages.colors(), 2), one) << size;
+    EXPECT_EQ(sweep(CpuExec(2), stages, {}, stages.colors(), 2), one) << size;
+    EXPECT_EQ(sweep(CpuExec(3), stages, {}, stages.colors(), 2), one) << size;
     EXPECT_NE(one.impulse, std::vector<double>(free.size()));
   }
 }
@@ -156,7 +156,7 @@ TEST_P(ContactSweep, WithoutColorsOrWithAnEmptyOneDoesNothing) {
   const std::vector<std::int64_t> none = {}, empty = {1, 1};
 
   for (const View<const std::int64_t> colors : {view_of(none), view_of(empty)}) {
-    const Swept swept = sweep(CpuContactExec(1), stages, {}, colors, 1);
+    const Swept swept = sweep(CpuExec(1), stages, {}, colors, 1);
     EXPECT_EQ(swept.impulse, std::vector<double>(9));
     EXPECT_EQ(swept.body_velocity, stages.system.body_free);
   }
@@ -170,7 +170,7 @@ TEST_P(ContactSweep, SkipsFrozenContactsAndCountsThem) {
   const FrozenContacts<double> frozen = {view_of(unchanged_visits), view_of(skipped_visits), false,
                                          0};
 
-  const Swept swept = sweep(CpuContactExec(1), stages, {}, stages.colors(), 3, frozen);
+  const Swept swept = sweep(CpuExec(1), stages, {}, stages.colors(), 3, frozen);
 
   EXPECT_EQ(skipped_visits, (std::vector<std::int32_t>{0, 0, 3, 0, 0, 3, 0}));
   for (const std::size_t slot : {2U, 5U}) {

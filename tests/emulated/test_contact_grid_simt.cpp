@@ -14,7 +14,7 @@
 #include "tests/support/contact_stages.hpp"
 #include "tests/support/contact_sweeps.hpp"
 
-#include "kernels/contact/contact_grid.cuh"
+#include "kernels/exec/exec_cuda.cuh"
 #include "kernels/exec/staged_arrays.cuh"
 
 namespace tetwarp::test {
@@ -27,7 +27,7 @@ TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
   const HostSweeps<double> host =
       sweep_on_host(scene.structure, scene.system, island, {}, impulse, 0);
   std::vector<double> velocity(impulse.size());
-  CpuContactExec cpu(1);
+  CpuExec cpu(1);
   cpu.for_each("", island.contact_count(),
                ContactVelocityBody<DelassusView<double>, double>{
                    scene.system.numbers(scene.structure.indices()).delassus, impulse.data(),
@@ -39,9 +39,8 @@ TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
                                             view_of(scene.system.free_velocity)};
   std::vector<double> first;
   simt::for_each_schedule([&](const simt::Schedule&) {
-    CudaExec exec(0);
-    GridContactExec grid(exec);
-    const auto sums = grid.sum<ContactSums>("", 0, island.contact_count(), body);
+    CudaExec exec(0, StageClocks::off);
+    const auto sums = exec.sum<ContactSums>("", 0, island.contact_count(), body);
     if (first.empty()) first = {sums.eta};
     EXPECT_EQ(sums.eta, first[0]);
     EXPECT_NEAR(sums.eta, host.sums.eta, 1e-12 * host.sums.eta);
@@ -72,21 +71,20 @@ std::vector<T> numbers(std::int64_t count, int first) {
 
 /// Expects a view of memory of the device, aligned to 16 bytes, with what numbers() gave.
 template <class T>
-void expect_numbers(const GridContactExec& grid,
+void expect_numbers(const CudaExec& exec,
                     const View<const T>& found,
                     std::int64_t count,
                     int first) {
   ASSERT_EQ(found.size, count);
   std::vector<T> values(static_cast<std::size_t>(count));
-  grid.get(found, values.data());
+  exec.get(found, values.data());
   EXPECT_EQ(values, numbers<T>(count, first));
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(found.data) % 16, 0u);
 }
 
 /// Sizes that grow and shrink, with empty arrays; sizes in bytes are mostly no multiples of 16.
 TEST(StagedArraysSimt, WhatIsPutArrivesByOneCopy) {
-  CudaExec exec(0);
-  GridContactExec grid(exec);
+  CudaExec exec(0, StageClocks::off);
   StagedArrays staged, other;
   const std::vector<std::int64_t> few = {1, 0, 3, 2};
   const std::vector<std::vector<std::int64_t>> sizes = {
@@ -99,7 +97,7 @@ TEST(StagedArraysSimt, WhatIsPutArrivesByOneCopy) {
       auto integers = numbers<std::int32_t>(of[1], first + 1);
       auto reals = numbers<double>(of[2], first + 2);
       auto structs = numbers<Staged>(of[3], first + 3);
-      const auto views = to.put(grid, bytes, integers, reals, structs);
+      const auto views = to.put(exec, bytes, integers, reals, structs);
       bytes.assign(bytes.size(), 99);  // they are not read after the call
       integers.assign(integers.size(), 99);
       reals.assign(reals.size(), 99);
@@ -109,11 +107,11 @@ TEST(StagedArraysSimt, WhatIsPutArrivesByOneCopy) {
     const auto views = put(staged, size, 1);
     const DeviceCalls calls = take_calls();
     const auto others = put(other, few, 50);
-    expect_numbers(grid, std::get<0>(views), size[0], 1);
-    expect_numbers(grid, std::get<1>(views), size[1], 2);
-    expect_numbers(grid, std::get<2>(views), size[2], 3);
-    expect_numbers(grid, std::get<3>(views), size[3], 4);
-    expect_numbers(grid, std::get<2>(others), few[2], 52);
+    expect_numbers(exec, std::get<0>(views), size[0], 1);
+    expect_numbers(exec, std::get<1>(views), size[1], 2);
+    expect_numbers(exec, std::get<2>(views), size[2], 3);
+    expect_numbers(exec, std::get<3>(views), size[3], 4);
+    expect_numbers(exec, std::get<2>(others), few[2], 52);
     const std::int64_t sum = size[0] + size[1] + size[2] + size[3];
     EXPECT_EQ(calls.count(DeviceCall::copy_to_device), sum > 0 ? 1 : 0);
     std::int64_t room = 0;

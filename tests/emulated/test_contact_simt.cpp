@@ -50,8 +50,8 @@ class IslandSolves {
 
   /// Impulses by blocks; `results` and `logs` of each island.
   std::vector<T> by_blocks(Place place) {
-    StateMemory<CpuContactExec, T> state = start();
-    MethodMemory<CpuContactExec, T> work;
+    StateMemory<CpuExec, T> state = start();
+    MethodMemory<CpuExec, T> work;
     std::vector<IslandTask> tasks;
     const ContactIndices indices = scene_.structure.indices();
     for (const ContactIsland& island : islands()) {
@@ -96,16 +96,16 @@ class IslandSolves {
 
   /// By the host, one island after the other.
   std::vector<T> by_host() {
-    StateMemory<CpuContactExec, T> state = start();
-    MethodMemory<CpuContactExec, T> work;
-    CpuContactExec exec(1);
+    StateMemory<CpuExec, T> state = start();
+    MethodMemory<CpuExec, T> work;
+    CpuExec exec(1);
     host_ends.clear();
     host_sums.clear();
     host_logs.clear();
     for (const ContactIsland& island : islands()) {
-      ContactPipeline<CpuContactExec, T> pipeline(exec, system_.numbers(scene_.structure.indices()),
-                                                  view_of(scene_.structure.color_start), island,
-                                                  switches, state.views());
+      ContactPipeline<CpuExec, T> pipeline(exec, system_.numbers(scene_.structure.indices()),
+                                           view_of(scene_.structure.color_start), island, switches,
+                                           state.views());
       HostEventLog log;
       host_ends.push_back(solve_island(pipeline, criterion_, plan_, 0, work.reserve(slots()), log));
       host_sums.push_back(pipeline.measure());
@@ -127,9 +127,9 @@ class IslandSolves {
             static_cast<std::size_t>(scene_.structure.contact_islands)};
   }
   std::int64_t slots() const { return scene_.structure.indices().slots(); }
-  StateMemory<CpuContactExec, T> start() const {
-    CpuContactExec exec(1);
-    StateMemory<CpuContactExec, T> state;
+  StateMemory<CpuExec, T> start() const {
+    CpuExec exec(1);
+    StateMemory<CpuExec, T> state;
     state.reset(exec, system_.numbers(scene_.structure.indices()), freezes);
     state.impulse.assign(state.impulse.size(), T(0.001));
     return state;

@@ -10,7 +10,8 @@
 #include <tetwarp/error.hpp>
 #include <tetwarp/warp.hpp>
 
-#include "kernels/contact/sweep_graph.cuh"
+#include "kernels/exec/exec_stream.cuh"
+#include "kernels/exec/part_graphs.cuh"
 #include "tests/support/contact_scenes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -153,7 +154,7 @@ TEST_F(DeviceErrors, ASweepIsRecordedAgainWhenAnyArgumentChanged) {
   cudaMemsetAsync(values.view(3).data, 0, 3 * sizeof(double), stream);
   const std::vector<std::int64_t> colors = {0, 2, 3};
   const View<const std::int64_t> color_start{colors.data(), 3};
-  SweepGraphs graphs;
+  PartGraphs graphs;
   for (const double amount : {1.0, 10.0, 1.0}) {
     graphs.launch(stream, color_start, AddBody{values.view(3).data, amount});
   }

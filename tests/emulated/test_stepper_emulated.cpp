@@ -158,7 +158,7 @@ class StoredInverses {
 
   Model model_;
   RestFactors factors_;
-  CudaStepExec exec_;
+  CudaExec exec_;
   DeviceScope scope_;
   ComplianceStore store_;
   std::vector<CompliantBody> bodies_{3};

@@ -9,7 +9,7 @@
 
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_pipeline.hpp"
 #include "tests/support/contact_scenes.hpp"
@@ -61,13 +61,13 @@ HostSweeps<T> sweep_on_host(const ContactStructure& structure,
                             ContactSwitches switches,
                             const std::vector<T>& start,
                             std::int64_t sweeps) {
-  CpuContactExec exec(1);
+  CpuExec exec(1);
   const ContactNumbers<T> numbers = system.numbers(structure.indices());
-  StateMemory<CpuContactExec, T> state;
+  StateMemory<CpuExec, T> state;
   state.reset(exec, numbers, false);
   state.impulse = start;
-  ContactPipeline<CpuContactExec, T> pipeline(exec, numbers, view_of(structure.color_start), island,
-                                              switches, state.views());
+  ContactPipeline<CpuExec, T> pipeline(exec, numbers, view_of(structure.color_start), island,
+                                       switches, state.views());
   pipeline.follow_impulses();
   for (std::int64_t s = 0; s < sweeps; ++s) pipeline.sweep({});
   const View<T> r = pipeline.impulse();

@@ -70,7 +70,7 @@ class ExecArrays {
   template <class T>
   std::vector<std::remove_const_t<T>> download(View<T> view) {
     std::vector<std::remove_const_t<T>> values(static_cast<std::size_t>(view.size));
-    exec_.read(View<const T>(view), values.data());
+    exec_.get(View<const T>(view), values.data());
     return values;
   }
 

@@ -3,7 +3,8 @@
 // members run on one side only.
 #pragma nv_diag_suppress 20011, 20013, 20014, 20015
 #include "host/base/warp_backend.hpp"
-#include "host/collide/cuda/detector_cuda.cuh"
+#include "host/collide/exec_detector.hpp"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
@@ -14,7 +15,8 @@ std::unique_ptr<Detector> make_cuda_detector(const CollisionSurfaces& surfaces,
     throw CudaError("cuda device " + std::to_string(options.device) + ": " + status.reason);
   }
   const DeviceScope scope(options.device);
-  return std::make_unique<CudaDetector>(surfaces, options);
+  return std::make_unique<ExecDetector<CudaExec>>(CudaExec(options.device, StageClocks::off),
+                                                  surfaces, options);
 }
 
 }  // namespace tetwarp

@@ -51,14 +51,14 @@ class BlockJacobi {
 
     Memory& resize(Exec& exec, const CoupledTask& task) {
       const std::int64_t rows = task.numbers.bodies.offset.size, dofs = task.numbers.load.size;
-      for (Vector<T>* values : {&impulse, &velocity}) exec.resize(*values, rows);
-      for (Vector<T>* values : {&body_velocity, &before, &defect}) exec.resize(*values, dofs);
+      for (Vector<T>* values : {&impulse, &velocity}) exec.make_zeros(*values, rows);
+      for (Vector<T>* values : {&body_velocity, &before, &defect}) exec.make_zeros(*values, dofs);
       const std::int64_t size = task.island.dof_end - task.island.dof_begin;
-      exec.resize(weights, size);
-      exec.resize(mixed, AndersonMixer<Exec, T>::columns * size);
+      exec.make_zeros(weights, size);
+      exec.make_zeros(mixed, AndersonMixer<Exec, T>::columns * size);
       if (std::is_same_v<T, double>) return *this;
-      exec.resize(double_impulse, rows);
-      exec.resize(double_body_velocity, dofs);
+      exec.make_zeros(double_impulse, rows);
+      exec.make_zeros(double_body_velocity, dofs);
       return *this;
     }
     ContactState<T> state() {
@@ -239,8 +239,8 @@ CoupledSolution solve_coupled_island(Exec& exec,
   ResidualEstimator<Exec> estimator(exec, task, memory.estimator);
   estimator.start(outcome);
   if (outcome.reason == StopReason::converged) return estimator.best();
-  exec.resize(memory.no_impulse, task.numbers.bodies.offset.size);
-  exec.resize(memory.no_velocity, task.numbers.load.size);
+  exec.make_zeros(memory.no_impulse, task.numbers.bodies.offset.size);
+  exec.make_zeros(memory.no_velocity, task.numbers.load.size);
   View<const double> r = view_of(memory.no_impulse), v = view_of(memory.no_velocity);
   if (task.guess.size > 0) {
     estimator.find_body_velocity(task.guess);

@@ -76,13 +76,13 @@ class CoupledSystem {
         matrix_(numbers.system),
         inverse_{numbers.system.dof_start, numbers.inverse_start, numbers.inverse} {
     for (auto* values : {&memory.direction, &memory.product, &memory.image}) {
-      exec.resize(*values, numbers.load.size);
+      exec.make_zeros(*values, numbers.load.size);
     }
     for (auto* values : {&memory.sizes, &memory.curvatures}) {
-      exec.resize(*values, max_products + 1);
+      exec.make_zeros(*values, max_products + 1);
     }
     for (auto* values : {&memory.factors, &memory.shrinks}) {
-      exec.resize(*values, max_products + 1);
+      exec.make_zeros(*values, max_products + 1);
     }
   }
 
@@ -108,7 +108,7 @@ class CoupledSystem {
     moved_square_ = 0;
     std::int64_t next_check = first_check;
     for (std::int64_t k = 0; k < max_products; ++k) {
-      if (!Exec::reads_need_sync && !(size[k].value[0] > 0)) break;
+      if (Exec::reads_are_free && !(size[k].value[0] > 0)) break;
       sum_to(GradientProductBody{matrix_, direction, product}, curvature + k);
       exec_.once("contact/relax", GradientQuotientBody{size + k, curvature + k, factor + k});
       sum_to(GradientStepBody{inverse_, factor + k, direction, product, x.data, defect.data, image},
@@ -116,7 +116,7 @@ class CoupledSystem {
       exec_.once("contact/relax", GradientQuotientBody{size + k + 1, size + k, shrink + k});
       body_relax(exec_, island_.block_begin, island_.block_end,
                  GradientTurnBody{inverse_.dof_start, shrink + k, image, direction});
-      const bool is_over = !Exec::reads_need_sync && !(size[k + 1].value[0] > 0);
+      const bool is_over = Exec::reads_are_free && !(size[k + 1].value[0] > 0);
       if (!is_over && k + 1 < std::min(next_check, max_products)) continue;
       const double left = read_steps(k + 1);
       progress.moved = std::sqrt(moved_square_);

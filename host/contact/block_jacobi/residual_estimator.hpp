@@ -51,13 +51,13 @@ class ResidualEstimator {
         system_(exec, task.numbers, task.island, memory.system),
         memory_(memory) {
     for (Vector* dofs : {&memory.body_velocity, &memory.defect, &memory.best_body_velocity}) {
-      exec.resize(*dofs, numbers_.load.size);
+      exec.make_zeros(*dofs, numbers_.load.size);
     }
     for (Vector* rows : {&memory.velocity, &memory.consistent_velocity, &memory.free_velocity,
                          &memory.previous_velocity, &memory.impulse, &memory.best_impulse}) {
-      exec.resize(*rows, numbers_.bodies.offset.size);
+      exec.make_zeros(*rows, numbers_.bodies.offset.size);
     }
-    exec.resize(memory.constants, numbers_.constants.size);
+    exec.make_zeros(memory.constants, numbers_.constants.size);
     exec.for_each("contact/setup", numbers_.constants.size,
                   LowerBlocksBody{numbers_.bodies.pairs.pair_start, numbers_.constants,
                                   options_.expert.relaxation, view_of(memory.constants)});
@@ -71,7 +71,7 @@ class ResidualEstimator {
     if (is_at_rest) {
       // A zero load gives no estimate of the eigenvalues of A; unit impulses on all contacts do.
       exec_.for_each("contact/setup", island_.contact_count(),
-                     FromContact<UnitPushBody>{{view_of(memory_.impulse)}, island_.slot_begin});
+                     FromIndex<UnitPushBody>{{view_of(memory_.impulse)}, island_.slot_begin});
       find_defect();
     }
     const LinearProgress progress =
@@ -220,7 +220,7 @@ class ResidualEstimator {
     using Body = ContactVelocityBody<BodiesView<double>, double>;
     const Body body{numbers_.bodies, view_of(memory_.body_velocity).data, view_of(velocity)};
     exec_.for_each("contact/residual", island_.contact_count(),
-                   FromContact<Body>{body, island_.slot_begin});
+                   FromIndex<Body>{body, island_.slot_begin});
   }
 
   /// Distance of `velocity` from the current contact velocities in the weights of eta. The norm of

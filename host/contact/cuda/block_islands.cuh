@@ -11,16 +11,15 @@
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_block.cuh"
-#include "kernels/contact/contact_grid.cuh"
 #include "kernels/exec/device_limits.cuh"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
 class BlockIslands {
  public:
-  /// @param exec, grid  kept by the caller
-  BlockIslands(CudaExec& exec, GridContactExec& grid, const DeviceLimits& limits)
-      : exec_(exec), grid_(grid), limits_(limits) {}
+  /// @param exec  kept by the caller
+  BlockIslands(CudaExec& exec, const DeviceLimits& limits) : exec_(exec), limits_(limits) {}
 
   /// Sorts the islands by falling size, so that no long one starts last, and copies their ranges to
   /// the device.
@@ -42,7 +41,7 @@ class BlockIslands {
       islands.push_back(structure.islands[index_of(i)]);
       host_tasks_.push_back({islands.back(), {}, island_arrays(indices, islands.back())});
     }
-    put(islands, islands_);
+    exec_.put(islands, islands_);
   }
 
   /// Measures the current impulses.
@@ -55,7 +54,7 @@ class BlockIslands {
     job.islands = view_of(std::as_const(islands_));
     job.sums = view_of(measured_);
     contact_measure_islands(exec_.stream(), job);
-    get(measured_, host_sums_);
+    exec_.get(measured_, host_sums_);
     for (std::size_t k = 0; k < host_sums_.size(); ++k) {
       take(index_of(numbers_[k]), host_sums_[k]);
     }
@@ -73,14 +72,14 @@ class BlockIslands {
     for (std::size_t k = 0; k < host_tasks_.size(); ++k) {
       host_tasks_[k].criterion = criteria[index_of(numbers_[k])];
     }
-    put(host_tasks_, tasks_);
+    exec_.put(host_tasks_, tasks_);
     results_.resize(count());
     events_.resize(count() * events_per_island);
     solve_part<T, island_threads>(job, 0, warp_begin_);
     solve_part<T, 32>(job, warp_begin_, count());
 
-    get(results_, host_results_);
-    get(events_, host_events_);
+    exec_.get(results_, host_results_);
+    exec_.get(events_, host_events_);
     for (std::size_t k = 0; k < host_tasks_.size(); ++k) {
       IslandOutcome& outcome = outcomes[index_of(numbers_[k])];
       outcome.add(host_results_[k].end, options.method, host_tasks_[k].island.contact_count());
@@ -112,18 +111,7 @@ class BlockIslands {
     contact_solve_islands<T, threads>(exec_.stream(), job);
   }
 
-  template <class T>
-  void put(const std::vector<T>& host, DeviceVector<T>& device) {
-    grid_.put(host.data(), static_cast<std::int64_t>(host.size()), device);
-  }
-  template <class T>
-  void get(const DeviceVector<T>& device, std::vector<T>& host) {
-    host.resize(index_of(view_of(device).size));
-    grid_.get(view_of(device), host.data());
-  }
-
   CudaExec& exec_;
-  GridContactExec& grid_;
   DeviceLimits limits_;
   std::vector<std::int64_t> numbers_;
   std::int64_t warp_begin_ = 0;  ///< the first that is solved by a warp

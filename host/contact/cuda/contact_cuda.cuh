@@ -16,14 +16,15 @@
 #include "host/contact/structure/indices.hpp"
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_components.hpp"
-#include "kernels/contact/contact_grid.cuh"
+#include "kernels/contact/device_sweep.cuh"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
 class CudaContactDevice final : public ContactDevice {
  public:
   CudaContactDevice(int device, std::string name)
-      : exec_(device), grid_(exec_), runs_(exec_, grid_), name_(std::move(name)) {}
+      : exec_(device, StageClocks::off), runs_(exec_), name_(std::move(name)) {}
 
   ContactSavings set_problem(const ContactOptions& options,
                              const ContactStructure& structure,
@@ -31,7 +32,7 @@ class CudaContactDevice final : public ContactDevice {
     const DeviceScope scope(exec_.number());
     set_structure(structure);
     return runs_.set_problem(options, structure, indices_,
-                             input_on_device(grid_, input, input_in_memory_));
+                             input_on_device(exec_, input, input_in_memory_));
   }
 
   std::int64_t solve_uncoupled(const ContactOptions& options,
@@ -40,9 +41,9 @@ class CudaContactDevice final : public ContactDevice {
                                std::vector<IslandOutcome>& outcomes) override {
     const DeviceScope scope(exec_.number());
     const std::int64_t skipped = runs_.solve(
-        options, [&] { put(impulse, runs_.impulse()); }, budget, outcomes);
-    get(runs_.impulse(), impulse);
-    get(runs_.body_velocity(), body_velocity);
+        options, [&] { exec_.put(impulse, runs_.impulse()); }, budget, outcomes);
+    exec_.get(runs_.impulse(), impulse);
+    exec_.get(runs_.body_velocity(), body_velocity);
     return skipped;
   }
 
@@ -54,14 +55,14 @@ class CudaContactDevice final : public ContactDevice {
                      std::vector<double>& body_velocity,
                      IslandOutcome& outcome) override {
     const DeviceScope scope(exec_.number());
-    put(guess, guess_);
+    exec_.put(guess, guess_);
     const auto colors = view_of(structure_->color_start);
     const auto start = view_of(std::as_const(guess_));
     const CoupledTask task{options,           island, colors,         runs_.numbers(),
                            runs_.numbers32(), start,  max_iterations, budget};
-    const CoupledSolution best = solve_coupled_island(grid_, task, block_jacobi_memory_, outcome);
-    grid_.get(best.impulse, impulse.data());
-    grid_.get(best.body_velocity, body_velocity.data());
+    const CoupledSolution best = solve_coupled_island(exec_, task, block_jacobi_memory_, outcome);
+    exec_.get(best.impulse, impulse.data());
+    exec_.get(best.body_velocity, body_velocity.data());
   }
 
   ResidentEnd solve_resident(const ContactOptions& options,
@@ -71,15 +72,15 @@ class CudaContactDevice final : public ContactDevice {
     const DeviceScope scope(exec_.number());
     const CallersStream stream(exec_, problem.stream);
     set_structure(structure);
-    resident_.set_pattern(grid_, *problem.pattern, structure.serial);
+    resident_.set_pattern(exec_, *problem.pattern, structure.serial);
     ResidentEnd end;
     ContactInput input = problem.input;
-    input.given_velocity = resident_.recovered(grid_, input, options.recovery_speed);
+    input.given_velocity = resident_.recovered(exec_, input, options.recovery_speed);
     end.savings = runs_.set_problem(options, structure, indices_, input);
-    if (!resident_.is_plain(grid_, problem, indices_, runs_.numbers())) return end;
+    if (!resident_.is_plain(exec_, problem, indices_, runs_.numbers())) return end;
     const auto start = [&] {
       if (problem.guess.size == 0) return;
-      grid_.for_each(
+      exec_.for_each(
           "contact/setup", indices_.slots(),
           GatherBody<3>{indices_.contact_of_slot, problem.guess, view_of(runs_.impulse())});
     };
@@ -89,11 +90,11 @@ class CudaContactDevice final : public ContactDevice {
       return outcome.reason == StopReason::converged;
     };
     if (!std::all_of(outcomes.begin(), outcomes.end(), converged)) {
-      get(runs_.impulse(), end.impulse);
-      get(runs_.body_velocity(), end.body_velocity);
+      exec_.get(runs_.impulse(), end.impulse);
+      exec_.get(runs_.body_velocity(), end.body_velocity);
       return end;
     }
-    const ResultSums sums = resident_.write_results(grid_, problem, indices_, runs_.numbers(),
+    const ResultSums sums = resident_.write_results(exec_, problem, indices_, runs_.numbers(),
                                                     view_of(std::as_const(runs_.impulse())),
                                                     view_of(std::as_const(runs_.body_velocity())));
     end.is_solved = sums.bad() == 0;
@@ -113,7 +114,7 @@ class CudaContactDevice final : public ContactDevice {
   void read(const double* device, std::int64_t size, double* host, void* stream) override {
     const DeviceScope scope(exec_.number());
     const CallersStream callers(exec_, stream);
-    grid_.get(View<const double>{device, size}, host);
+    exec_.get(View<const double>{device, size}, host);
   }
 
   void write(const double* host, std::int64_t size, double* device, void* stream) override {
@@ -122,37 +123,37 @@ class CudaContactDevice final : public ContactDevice {
     check_cuda(cudaMemcpyAsync(device, host, index_of(size) * sizeof(double),
                                cudaMemcpyHostToDevice, exec_.stream()),
                "cudaMemcpyAsync to device");
-    check_cuda(cudaStreamSynchronize(exec_.stream()), "cudaStreamSynchronize");
+    exec_.wait();
   }
 
   std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override {
     const DeviceScope scope(exec_.number());
     input_in_memory_.restart();
     labels_.resize(item_count);
-    contact_components(grid_, on_device(lists.start), on_device(lists.item), view_of(labels_));
+    contact_components(exec_, on_device(lists.start), on_device(lists.item), view_of(labels_));
     return labels();
   }
 
   void evolve(const ContactAdhesionBody& body) override {
     const DeviceScope scope(exec_.number());
     ContactAdhesionBody on_device = body;
-    on_device.in = adhesion_on_device(grid_, body.in, input_in_memory_);
+    on_device.in = adhesion_on_device(exec_, body.in, input_in_memory_);
     next_intensity_.resize(body.next_intensity.size);
     next_gap_.resize(body.next_gap.size);
     debonded_.resize(body.debonded.size);
     on_device.next_intensity = view_of(next_intensity_);
     on_device.next_gap = view_of(next_gap_);
     on_device.debonded = view_of(debonded_);
-    contact_adhesion(grid_, on_device);
-    grid_.get(view_of(std::as_const(next_intensity_)), body.next_intensity.data);
-    grid_.get(view_of(std::as_const(next_gap_)), body.next_gap.data);
-    grid_.get(view_of(std::as_const(debonded_)), body.debonded.data);
+    contact_adhesion(exec_, on_device);
+    exec_.get(view_of(std::as_const(next_intensity_)), body.next_intensity.data);
+    exec_.get(view_of(std::as_const(next_gap_)), body.next_gap.data);
+    exec_.get(view_of(std::as_const(debonded_)), body.debonded.data);
   }
 
   void evolve_resident(const ContactAdhesionBody& body, void* stream) override {
     const DeviceScope scope(exec_.number());
     const CallersStream callers(exec_, stream);
-    contact_adhesion(grid_, body);
+    contact_adhesion(exec_, body);
   }
 
   std::string name() const override { return name_; }
@@ -161,7 +162,7 @@ class CudaContactDevice final : public ContactDevice {
   /// Runs kernels on the stream of a caller, or after the default stream, until it is destroyed.
   class CallersStream {
    public:
-    CallersStream(CudaExec& exec, void* stream) : exec_(exec) { exec.begin_compute(stream, true); }
+    CallersStream(CudaExec& exec, void* stream) : exec_(exec) { exec.follow(stream); }
     CallersStream(const CallersStream&) = delete;
     CallersStream& operator=(const CallersStream&) = delete;
     ~CallersStream() { exec_.drain(); }
@@ -173,36 +174,25 @@ class CudaContactDevice final : public ContactDevice {
   void set_structure(const ContactStructure& structure) {
     structure_ = &structure;
     if (serial_ == structure.serial) return;
-    grid_.forget_sweeps();  // a new structure may move the arrays
+    exec_.forget_parts();  // a new structure may move the arrays
     indices_in_memory_.restart();
     indices_ = make_indices(structure, [&](const auto& array) {
-      return indices_in_memory_.put(grid_, view_of(array));
+      return indices_in_memory_.put(exec_, view_of(array));
     });
     serial_ = structure.serial;
   }
 
   template <class T>
-  void put(const std::vector<T>& host, DeviceVector<T>& device) {
-    grid_.put(host.data(), static_cast<std::int64_t>(host.size()), device);
-  }
-  template <class T>
-  void get(const DeviceVector<T>& device, std::vector<T>& host) {
-    host.resize(static_cast<std::size_t>(view_of(device).size));
-    grid_.get(view_of(device), host.data());
-  }
-
-  template <class T>
   View<const T> on_device(const std::vector<T>& host) {
-    return input_in_memory_.put(grid_, view_of(host));
+    return input_in_memory_.put(exec_, view_of(host));
   }
   std::vector<std::int32_t> labels() {
     std::vector<std::int32_t> result;
-    get(labels_, result);
+    exec_.get(labels_, result);
     return result;
   }
 
   CudaExec exec_;
-  GridContactExec grid_;
   IslandRuns runs_;
   ResidentArrays resident_;
   std::string name_;
@@ -210,7 +200,7 @@ class CudaContactDevice final : public ContactDevice {
   std::int64_t serial_ = 0;  ///< of the structure that `indices_` were copied from
   DeviceArrays indices_in_memory_, input_in_memory_;
   ContactIndices indices_;  ///< views of indices_in_memory_
-  BlockJacobiMemory<GridContactExec> block_jacobi_memory_;
+  BlockJacobiMemory<CudaExec> block_jacobi_memory_;
   DeviceVector<double> guess_, next_intensity_, next_gap_;
   DeviceVector<std::int32_t> labels_;
   DeviceVector<std::uint8_t> debonded_;

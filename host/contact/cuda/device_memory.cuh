@@ -10,7 +10,7 @@
 
 #include "kernels/contact/contact_adhesion.hpp"
 #include "kernels/contact/contact_fill.hpp"
-#include "kernels/contact/contact_grid.cuh"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
@@ -21,7 +21,7 @@ class DeviceArrays {
   void restart() { used_ = 0; }
 
   template <class T>
-  View<const T> put(const GridContactExec& exec, View<const T> host) {
+  View<const T> put(CudaExec& exec, View<const T> host) {
     if (used_ == arrays_.size()) arrays_.emplace_back();
     DeviceVector<std::byte>& array = arrays_[used_++];
     const auto bytes = host.size * static_cast<std::int64_t>(sizeof(T));
@@ -37,7 +37,7 @@ class DeviceArrays {
 /// The same struct with views of copies on the device.
 /// @param members  the views to copy
 template <class Numbers>
-Numbers numbers_on_device(const GridContactExec& exec,
+Numbers numbers_on_device(CudaExec& exec,
                           const Numbers& host,
                           std::initializer_list<View<const double> Numbers::*> members,
                           DeviceArrays& arrays) {
@@ -47,7 +47,7 @@ Numbers numbers_on_device(const GridContactExec& exec,
   return result;
 }
 
-inline ContactInput input_on_device(const GridContactExec& exec,
+inline ContactInput input_on_device(CudaExec& exec,
                                     const ContactInput& host,
                                     DeviceArrays& arrays) {
   using In = ContactInput;
@@ -63,7 +63,7 @@ inline ContactInput input_on_device(const GridContactExec& exec,
   return result;
 }
 
-inline AdhesionViews adhesion_on_device(const GridContactExec& exec,
+inline AdhesionViews adhesion_on_device(CudaExec& exec,
                                         const AdhesionViews& host,
                                         DeviceArrays& arrays) {
   using In = AdhesionViews;

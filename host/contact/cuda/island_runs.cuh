@@ -13,11 +13,12 @@
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
 #include "host/contact/sweeps/run.hpp"
-#include "kernels/contact/contact_grid.cuh"
 #include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_system.hpp"
+#include "kernels/contact/device_sweep.cuh"
 #include "kernels/contact/grid_island.cuh"
 #include "kernels/exec/device_limits.cuh"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
@@ -34,11 +35,9 @@ struct SkippedVisitsBody {
 /// launch, larger ones one after the other by the whole device.
 class IslandRuns {
  public:
-  IslandRuns(CudaExec& exec, GridContactExec& grid)
-      : exec_(exec),
-        grid_(grid),
-        limits_(device_limits(exec.number())),
-        blocks_(exec, grid, limits_) {}
+  /// @param exec  kept by the caller
+  explicit IslandRuns(CudaExec& exec)
+      : exec_(exec), limits_(device_limits(exec.number())), blocks_(exec, limits_) {}
 
   /// Sets the numbers, in the order of the structure.
   /// @param structure  kept by the caller until the next call
@@ -54,12 +53,12 @@ class IslandRuns {
     }
     structure_ = &structure;
     indices_ = indices;
-    float64_.system.resize(grid_, indices_);
+    float64_.system.resize(exec_, indices_);
     const ContactSavings savings =
-        fill_numbers(grid_, input, indices_, choices_of(options), float64_.system.views());
+        fill_numbers(exec_, input, indices_, choices_of(options), float64_.system.views());
     float64_.numbers = float64_.system.numbers(indices_);
     if (options.precision == ContactPrecision::float32) {
-      convert_system(grid_, indices_, float64_.system, float32_.system);
+      convert_system(exec_, indices_, float64_.system, float32_.system);
       float32_.numbers = float32_.system.numbers(indices_);
     }
     return savings;
@@ -77,7 +76,7 @@ class IslandRuns {
                      SolveBudget* budget,
                      std::vector<IslandOutcome>& outcomes) {
     budget_ = budget;
-    float64_.state.reset(grid_, float64_.numbers, freezes_contacts(options));
+    float64_.state.reset(exec_, float64_.numbers, freezes_contacts(options));
     measure(options, [&](std::size_t i, const IslandSums& sums) {
       outcomes[i].free = sums.sums;
       outcomes[i].free_square = sums.free_square;
@@ -88,11 +87,11 @@ class IslandRuns {
     if (options.precision == ContactPrecision::float64) {
       skipped = solve(options, criteria, float64_, outcomes);
     } else {
-      float32_.state.reset(grid_, float32_.numbers, freezes_contacts(options));
-      convert(grid_, View<const double>(view_of(float64_.state.impulse)),
+      float32_.state.reset(exec_, float32_.numbers, freezes_contacts(options));
+      convert(exec_, View<const double>(view_of(float64_.state.impulse)),
               view_of(float32_.state.impulse));
       skipped = solve(options, criteria, float32_, outcomes);
-      convert(grid_, View<const float>(view_of(float32_.state.impulse)),
+      convert(exec_, View<const float>(view_of(float32_.state.impulse)),
               view_of(float64_.state.impulse));
     }
     measure(options, [&](std::size_t i, const IslandSums& sums) {
@@ -116,17 +115,11 @@ class IslandRuns {
 
   template <class T>
   struct Problem {
-    SystemMemory<GridContactExec, T> system;
+    SystemMemory<CudaExec, T> system;
     ContactNumbers<T> numbers;  ///< views of `system`
-    StateMemory<GridContactExec, T> state;
-    MethodMemory<GridContactExec, T> work;
+    StateMemory<CudaExec, T> state;
+    MethodMemory<CudaExec, T> work;
   };
-
-  template <class T>
-  void get(const DeviceVector<T>& device, std::vector<T>& host) {
-    host.resize(static_cast<std::size_t>(view_of(device).size));
-    grid_.get(view_of(device), host.data());
-  }
 
   /// Divides the islands into those for one block or warp each and those for the whole device.
   void sort_islands(const ContactStructure& structure) {
@@ -194,7 +187,7 @@ class IslandRuns {
     }
     const View<const std::int32_t> visits = view_of(std::as_const(problem.state.skipped_visits));
     const auto skipped =
-        grid_.sum<PlainSums<1>>("contact/sweep", 0, visits.size, SkippedVisitsBody{visits});
+        exec_.sum<PlainSums<1>>("contact/sweep", 0, visits.size, SkippedVisitsBody{visits});
     return static_cast<std::int64_t>(skipped.value[0]);
   }
 
@@ -207,8 +200,8 @@ class IslandRuns {
                      const MethodWork<T>& work,
                      IslandOutcome& outcome) {
     const std::int64_t terms = most_terms_of(island(i));
-    method_state_.resize(ResidentGridExec::state_bytes);
-    sums_.resize(ResidentGridExec::sum_bytes(terms));
+    method_state_.resize(GridExec::state_bytes);
+    sums_.resize(GridTeam::sum_bytes(terms));
     grid_result_.resize(1);
     grid_events_.resize(events_per_grid);
     contact_solve_by_grid<T>(
@@ -217,18 +210,18 @@ class IslandRuns {
          plan_of(options), IslandTask{island(i), criterion}, view_of(method_state_).data,
          view_of(sums_).data, terms, view_of(grid_result_), view_of(grid_events_)},
         limits_.multiprocessors);
-    get(grid_result_, host_result_);
+    exec_.get(grid_result_, host_result_);
     const IslandResult result = host_result_[0];
     outcome.events.resize(index_of(result.events));
-    grid_.get({view_of(grid_events_).data, result.events}, outcome.events.data());
+    exec_.get({view_of(grid_events_).data, result.events}, outcome.events.data());
     outcome.add(result.end, options.method, island(i).contact_count());
   }
 
   template <class T>
-  ContactPipeline<GridContactExec, T> pipeline_of(const ContactOptions& options,
-                                                  std::int64_t i,
-                                                  Problem<T>& problem) {
-    return {grid_,     problem.numbers,      view_of(structure_->color_start),
+  ContactPipeline<CudaExec, T> pipeline_of(const ContactOptions& options,
+                                           std::int64_t i,
+                                           Problem<T>& problem) {
+    return {exec_,     problem.numbers,      view_of(structure_->color_start),
             island(i), switches_of(options), problem.state.views()};
   }
 
@@ -237,7 +230,6 @@ class IslandRuns {
   }
 
   CudaExec& exec_;
-  GridContactExec& grid_;
   DeviceLimits limits_;
   SolveBudget* budget_ = nullptr;
   const ContactStructure* structure_ = nullptr;

@@ -10,21 +10,19 @@
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/cuda/device_memory.cuh"
 #include "host/contact/structure/structure.hpp"
-#include "kernels/contact/contact_grid.cuh"
 #include "kernels/contact/contact_numbers.hpp"
 #include "kernels/contact/resident_results.hpp"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
 class ResidentArrays {
  public:
   /// Copies the pattern to the device if the structure is another than at the last call.
-  void set_pattern(const GridContactExec& grid,
-                   const ContactProblem& problem,
-                   std::int64_t structure_serial) {
+  void set_pattern(CudaExec& exec, const ContactProblem& problem, std::int64_t structure_serial) {
     if (serial_ == structure_serial) return;
     arrays_.restart();
-    const auto put = [&](const auto& values) { return arrays_.put(grid, view_of(values)); };
+    const auto put = [&](const auto& values) { return arrays_.put(exec, view_of(values)); };
     const auto rows_of = [&](const SparseMatrix& matrix) {
       return RowsView{put(matrix.row_start), put(matrix.column)};
     };
@@ -43,10 +41,10 @@ class ResidentArrays {
   }
 
   /// The offsets w with normal ones of at least -speed, or q.
-  View<const double> recovered(GridContactExec& grid, const ContactInput& in, double speed) {
+  View<const double> recovered(CudaExec& exec, const ContactInput& in, double speed) {
     if (in.load.size == 0 || speed == INFINITY) return in.given_velocity;
     recovered_.resize(in.given_velocity.size);
-    grid.for_each("contact/setup", in.friction.size,
+    exec.for_each("contact/setup", in.friction.size,
                   RecoveryBody{in.given_velocity, speed, view_of(recovered_)});
     return view_of(std::as_const(recovered_));
   }
@@ -54,7 +52,7 @@ class ResidentArrays {
   /// Whether the checks of the host would pass, the pattern is still the same, and every normal
   /// spring has the gap dt w_n. Reads one number.
   /// @param numbers  of the problem, filled
-  bool is_plain(GridContactExec& grid,
+  bool is_plain(CudaExec& exec,
                 const ResidentProblem& problem,
                 const ContactIndices& indices,
                 const ContactNumbers<double>& numbers) {
@@ -66,7 +64,7 @@ class ResidentArrays {
     checks_.resize(check_count);
     largest_.resize(1);
     const View<BadCount> checks = view_of(checks_);
-    grid.resize(checks_, check_count);
+    exec.make_zeros(checks_, check_count);
 
     RangeCheckBody range;
     for (const View<const double> any :
@@ -78,22 +76,22 @@ class ResidentArrays {
       range.add(positive, 0, most);
     }
     range.add(in.intensity, 0, 1);
-    grid.sum_to(label, 0, range.total, range, &checks[0]);
+    exec.sum_to(label, 0, range.total, range, &checks[0]);
 
     const ContactScalesBody scales{in, rows_, indices.is_local};
-    grid.sum_to(label, 0, contacts, scales, &view_of(largest_)[0]);
+    exec.sum_to(label, 0, contacts, scales, &view_of(largest_)[0]);
     const LargestOf<2>* const largest = view_of(largest_).data;
-    grid.sum_to(label, 0, contacts, ContactCheckBody{scales, largest}, &checks[1]);
+    exec.sum_to(label, 0, contacts, ContactCheckBody{scales, largest}, &checks[1]);
     if (indices.is_local) {
-      grid.sum_to(label, 0, 3 * contacts, SemidefiniteCheckBody{scales, largest}, &checks[2]);
+      exec.sum_to(label, 0, 3 * contacts, SemidefiniteCheckBody{scales, largest}, &checks[2]);
     } else {
-      grid.sum_to(label, 0, is_zero_.size, ZeroPatternBody{in.matrix, is_zero_}, &checks[2]);
-      grid.sum_to(
+      exec.sum_to(label, 0, is_zero_.size, ZeroPatternBody{in.matrix, is_zero_}, &checks[2]);
+      exec.sum_to(
           label, 0, indices.blocks(),
           BlockCheckBody{indices.pairs.dof_start, indices.diagonal_value, numbers.system.values},
           &checks[3]);
     }
-    const auto bad = grid.sum<BadCount>(label, 0, check_count,
+    const auto bad = exec.sum<BadCount>(label, 0, check_count,
                                         ReadySums<BadCount>{View<const BadCount>(checks)});
     return bad.value[0] == 0;
   }
@@ -103,7 +101,7 @@ class ResidentArrays {
   /// @param impulse        [3 slots]
   /// @param body_velocity  by places, [dofs]
   /// @return  sums over them
-  ResultSums write_results(GridContactExec& grid,
+  ResultSums write_results(CudaExec& exec,
                            const ResidentProblem& problem,
                            const ContactIndices& indices,
                            const ContactNumbers<double>& numbers,
@@ -119,21 +117,21 @@ class ResidentArrays {
     const View<double> r = target(problem.impulse, impulse.size, impulse_);
     const View<double> u = target(problem.velocity, impulse.size, velocity_);
     const View<double> v = target(problem.body_velocity, body_velocity.size, body_velocity_);
-    grid.for_each(label, indices.slots(), ScatterItemsBody<3>{indices.contact_of_slot, impulse, r});
-    grid.for_each(label, indices.dofs(),
+    exec.for_each(label, indices.slots(), ScatterItemsBody<3>{indices.contact_of_slot, impulse, r});
+    exec.for_each(label, indices.dofs(),
                   ScatterItemsBody<1>{indices.dof_of_place, body_velocity, v});
     const View<const double> x = indices.is_local ? View<const double>(r) : View<const double>(v);
-    grid.for_each(
+    exec.for_each(
         label, r.size,
         RowResultBody{rows_, indices.is_local ? in.matrix : in.jacobian, x, in.given_velocity, u});
     sums_.resize(2);
     const View<ResultSums> sums = view_of(sums_);
-    grid.sum_to(label, 0, r.size, ContactResultBody{r, u}, &sums[0]);
-    grid.sum_to(label, 0, indices.blocks(),
+    exec.sum_to(label, 0, r.size, ContactResultBody{r, u}, &sums[0]);
+    exec.sum_to(label, 0, indices.blocks(),
                 BalanceSumsBody{numbers.system, numbers.block_contacts, numbers.bodies.jacobian,
                                 numbers.load, impulse, body_velocity},
                 &sums[1]);
-    return grid.sum<ResultSums>(label, 0, 2, ReadySums<ResultSums>{View<const ResultSums>(sums)});
+    return exec.sum<ResultSums>(label, 0, 2, ReadySums<ResultSums>{View<const ResultSums>(sums)});
   }
 
  private:

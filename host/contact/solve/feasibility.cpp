@@ -24,7 +24,7 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
 /// Sets the state of an island to that without impulses.
 void start_island(const ContactNumbers<double>& numbers,
                   const ContactIsland& island,
-                  StateMemory<CpuContactExec, double>& state) {
+                  StateMemory<CpuExec, double>& state) {
   const std::int64_t slot = 3 * island.slot_begin, size = 3 * island.contact_count();
   std::fill_n(state.impulse.begin() + slot, size, 0.0);
   std::copy_n(numbers.free_velocity.data + slot, size, state.velocity.begin() + slot);
@@ -35,7 +35,7 @@ void start_island(const ContactNumbers<double>& numbers,
 
 /// y . B y for impulses y of the pipeline's island. The impulses of the pipeline are kept, and its
 /// velocities recomputed from them.
-double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::vector<double>& y) {
+double energy_of(ContactPipeline<CpuExec, double>& pipeline, const std::vector<double>& y) {
   const View<double> impulse = pipeline.impulse();
   const std::vector<double> kept(impulse.data, impulse.data + impulse.size);
   std::copy(y.begin(), y.end(), impulse.data);
@@ -69,7 +69,7 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     if (!is_contact(system.constants[index_of(s)].kind)) return {};
   }
-  CpuContactExec exec(1);
+  CpuExec exec(1, StageClocks::off);
   if (!memory.bare) {
     memory.bare = make_bare(system);
     memory.state.reset(exec, memory.bare->numbers(structure.indices()), false);
@@ -77,8 +77,8 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   const ContactSystem<double>& bare = *memory.bare;
   const ContactNumbers<double> numbers = bare.numbers(structure.indices());
   start_island(numbers, island, memory.state);
-  ContactPipeline<CpuContactExec, double> pipeline(exec, numbers, view_of(structure.color_start),
-                                                   island, {}, memory.state.views());
+  ContactPipeline<CpuExec, double> pipeline(exec, numbers, view_of(structure.color_start), island,
+                                            {}, memory.state.views());
   double required = 0;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     const auto slot = static_cast<std::size_t>(s);

@@ -12,7 +12,7 @@
 #include "host/contact/solve/engine_result.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_memory.hpp"
 
 namespace tetwarp {
@@ -28,7 +28,7 @@ struct ContradictionSearch {
 struct ContradictionMemory {
   std::optional<ContactSystem<double>>
       bare;  ///< without friction and springs; empty: of no problem
-  StateMemory<CpuContactExec, double> state;
+  StateMemory<CpuExec, double> state;
 };
 
 /// Slots of an island whose normal offsets contradict each other; empty when none do, and for

@@ -152,9 +152,9 @@ void IslandSolver::iterate(std::int64_t i, std::int64_t max_iterations, EngineRe
     device_->solve_coupled(options_, island, guess, max_iterations, impulse, body_velocity,
                            outcome);
   } else {
-    CpuContactExec exec(threads_);
+    CpuExec exec(threads_, StageClocks::off);
     if (block_jacobi_memory_ == nullptr)
-      block_jacobi_memory_ = std::make_shared<BlockJacobiMemory<CpuContactExec>>();
+      block_jacobi_memory_ = std::make_shared<BlockJacobiMemory<CpuExec>>();
     ContactSystem<double>& system = host_system();
     const ContactIndices indices = structure_.indices();
     const ContactNumbers<double> numbers = system.numbers(indices);

@@ -83,7 +83,7 @@ class IslandSolver {
   bool has_device_system_ = false;            ///< the device has them
   ContradictionMemory contradiction_memory_;  ///< of the problem
   std::vector<double> free_motion_;
-  std::shared_ptr<BlockJacobiMemory<CpuContactExec>>
+  std::shared_ptr<BlockJacobiMemory<CpuExec>>
       block_jacobi_memory_;  ///< null: no island iterated so far
 };
 

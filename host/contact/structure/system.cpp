@@ -20,7 +20,7 @@ void fill_system(const ContactProblem& problem,
                  ContactSystem<double>& system,
                  ContactSavings& savings,
                  int threads) {
-  CpuContactExec exec(structure.contact_of_slot.size() < worth_a_thread ? 1 : threads);
+  CpuExec exec(structure.contact_of_slot.size() < worth_a_thread ? 1 : threads, StageClocks::off);
   system.resize(exec, structure.indices());
   savings = fill_numbers(exec, input_of(problem), structure.indices(), choices_of(options),
                          system.views());
@@ -29,7 +29,7 @@ void fill_system(const ContactProblem& problem,
 ContactSystem<float> make_float32(const ContactStructure& structure,
                                   ContactSystem<double>& system) {
   ContactSystem<float> result;
-  CpuContactExec exec(1);
+  CpuExec exec(1, StageClocks::off);
   convert_system(exec, structure.indices(), system, result);
   return result;
 }

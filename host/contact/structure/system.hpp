@@ -8,13 +8,13 @@
 
 #include "host/contact/problem/input.hpp"
 #include "host/contact/structure/structure.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_system.hpp"
 
 namespace tetwarp {
 
 template <class T>
-using ContactSystem = SystemMemory<CpuContactExec, T>;
+using ContactSystem = SystemMemory<CpuExec, T>;
 
 /// The options that the stage "setup" reads.
 ContactChoices choices_of(const ContactOptions& options);

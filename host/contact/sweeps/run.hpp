@@ -11,7 +11,7 @@
 #include "host/base/parallel.hpp"
 #include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/system.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_methods.hpp"
 
@@ -85,7 +85,7 @@ class ContactRun {
         work_(work_memory_.reserve(static_cast<std::int64_t>(system.constants.size()))),
         outcomes_(outcomes),
         budget_(budget) {
-    CpuContactExec exec(1);
+    CpuExec exec(1, StageClocks::off);
     state_.reset(exec, numbers_, freezes_contacts(options));
     for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
       if (!island(i).is_coupled) measure_free(i);
@@ -93,7 +93,7 @@ class ContactRun {
     criteria_ = stop_criteria(options, structure, outcomes);
   }
 
-  StateMemory<CpuContactExec, T>& state() { return state_; }
+  StateMemory<CpuExec, T>& state() { return state_; }
   const ContactSystem<T>& system() const { return system_; }
   /// Visits of frozen contacts that sweeps skipped.
   std::int64_t updates_skipped() const {
@@ -147,7 +147,7 @@ class ContactRun {
   const T* best_impulse(std::int64_t i) const { return work_.best.data + 3 * island(i).slot_begin; }
 
   ContactSums measure(std::int64_t i) {
-    CpuContactExec exec(1);
+    CpuExec exec(1, StageClocks::off);
     return measure_island(pipeline_of(i, exec)).sums;
   }
   /// Error over allowed error of an island.
@@ -171,14 +171,14 @@ class ContactRun {
   const ContactIsland& island(std::int64_t i) const {
     return structure_.islands[static_cast<std::size_t>(i)];
   }
-  ContactPipeline<CpuContactExec, T> pipeline_of(std::int64_t i, CpuContactExec& exec) {
+  ContactPipeline<CpuExec, T> pipeline_of(std::int64_t i, CpuExec& exec) {
     return {
         exec,          numbers_, view_of(structure_.color_start), island(i), switches_of(options_),
         state_.views()};
   }
 
   void measure_free(std::int64_t i) {
-    CpuContactExec exec(1);
+    CpuExec exec(1, StageClocks::off);
     IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
     const IslandSums sums = measure_island(pipeline_of(i, exec));
     outcome.free = sums.sums;
@@ -190,8 +190,8 @@ class ContactRun {
                ContactMethod method,
                std::int64_t sweep_end,
                bool leaves_best = true) {
-    CpuContactExec exec(threads);
-    ContactPipeline<CpuContactExec, T> pipeline = pipeline_of(i, exec);
+    CpuExec exec(threads, StageClocks::off);
+    ContactPipeline<CpuExec, T> pipeline = pipeline_of(i, exec);
     IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
     HostEventLog log{.events = {}, .budget = budget_};
     MethodPlan plan = plan_of(options_);
@@ -210,8 +210,8 @@ class ContactRun {
   const ContactStructure& structure_;
   const ContactSystem<T>& system_;
   ContactNumbers<T> numbers_;
-  StateMemory<CpuContactExec, T> state_;
-  MethodMemory<CpuContactExec, T> work_memory_;
+  StateMemory<CpuExec, T> state_;
+  MethodMemory<CpuExec, T> work_memory_;
   MethodWork<T> work_;
   std::vector<StopCriterion> criteria_;
   std::vector<IslandOutcome>& outcomes_;

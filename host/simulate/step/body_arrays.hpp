@@ -17,12 +17,6 @@
 
 namespace tetwarp {
 
-/// Numbers of an executor, and where on the host they are copied to.
-struct HostCopy {
-  View<const double> from;
-  double* to;
-};
-
 template <class T>
 std::int64_t count_of(const std::vector<T>& values) {
   return static_cast<std::int64_t>(values.size());
@@ -39,7 +33,7 @@ template <class Exec>
 class PatternArrays {
  public:
   template <class T>
-  using Vector = typename Exec::template Vector<T>;
+  using Vector = typename Exec::template LargeVector<T>;
 
   PatternArrays(Exec& exec, const SystemPattern& pattern) {
     rows_.count = pattern.row_count;
@@ -91,7 +85,7 @@ template <class Exec>
 class ConstantArrays {
  public:
   template <class T>
-  using Vector = typename Exec::template Vector<T>;
+  using Vector = typename Exec::template LargeVector<T>;
 
   ConstantArrays(Exec& exec, const Model& model) {
     put_tets(exec, model.tets);
@@ -189,7 +183,7 @@ class ConstantArrays {
 template <class Exec>
 struct StepArrays {
   template <class T>
-  using Vector = typename Exec::template Vector<T>;
+  using Vector = typename Exec::template LargeVector<T>;
 
   Vector<double> position, centre, rotation, velocity, angular_momentum;  ///< of ModelState
   Vector<double> previous;                                                ///< NodeMovedBody
@@ -208,11 +202,11 @@ struct StepArrays {
 
   StepArrays(Exec& exec, const Model& model, const SystemRows& rows) {
     const std::int64_t nodes = model.node_count, rigid = model.rigid_count;
-    exec.resize(support, 3 * model.block_count());
-    exec.resize(has_moved, nodes);
+    exec.make_zeros(support, 3 * model.block_count());
+    exec.make_zeros(has_moved, nodes);
     const std::int64_t tets = count_of(model.tets.nodes);
-    exec.resize(tet_has_turned, tets);
-    exec.resize(tet_is_skipped, tets);
+    exec.make_zeros(tet_has_turned, tets);
+    exec.make_zeros(tet_is_skipped, tets);
     std::vector<TetTurned> start(model.tets.nodes.size());
     for (std::size_t t = 0; t < start.size(); ++t) {
       start[t].volume_lambda = model.tets.volume[t] * model.tets.lambda[t];
@@ -220,15 +214,15 @@ struct StepArrays {
       start[t].gamma = model.tets.gamma[t];
     }
     exec.put(start.data(), tets, turned);
-    exec.resize(tet_force, tets);
-    exec.resize(edge_pull, count_of(model.edges.nodes));
-    exec.resize(edge_has_turned, count_of(model.edges.nodes));
-    exec.resize(spring_pull, count_of(model.springs.a));
-    exec.resize(inertia, 9 * rigid);
-    exec.resize(block_is_skipped, rows.upper.size);
-    exec.resize(values, 9 * rows.column.size + 1);  // vectors read one number beyond a block
-    exec.resize(load, 3 * std::int64_t{rows.count});
-    exec.resize(x, 3 * std::int64_t{rows.count});
+    exec.make_zeros(tet_force, tets);
+    exec.make_zeros(edge_pull, count_of(model.edges.nodes));
+    exec.make_zeros(edge_has_turned, count_of(model.edges.nodes));
+    exec.make_zeros(spring_pull, count_of(model.springs.a));
+    exec.make_zeros(inertia, 9 * rigid);
+    exec.make_zeros(block_is_skipped, rows.upper.size);
+    exec.make_zeros(values, 9 * rows.column.size + 1);  // vectors read one number beyond a block
+    exec.make_zeros(load, 3 * std::int64_t{rows.count});
+    exec.make_zeros(x, 3 * std::int64_t{rows.count});
   }
 };
 

@@ -6,12 +6,15 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "host/simulate/step/body_arrays.hpp"
+#include "host/simulate/step/island_gradients.hpp"
 #include "host/simulate/step/solve_arrays.hpp"
 #include "host/simulate/step/step_clock.hpp"
+#include "kernels/base/host_copy.hpp"
+#include "kernels/base/stage_times.hpp"
+#include "kernels/body/flag_count.hpp"
 #include "kernels/body/node_moved.hpp"
 #include "kernels/body/rigid_midpoint.hpp"
 
@@ -19,12 +22,16 @@ namespace tetwarp {
 
 /// Backward Euler: (M + dt C + dt^2 K) v = M v0 + dt F, then x += dt v. See stepper.hpp for what
 /// its functions do. A step allocates no memory once system() and move() have been called.
-/// Exec: host/simulate/step/cpu/step_exec_cpu.hpp lists its functions.
+/// @tparam Exec  CpuExec or CudaExec
 template <class Exec, class T>
 class BodyPipeline {
  public:
-  BodyPipeline(Exec& exec, const Model& model, const StepperOptions& options)
-      : BodyPipeline(exec, model, options, make_system_pattern(model)) {}
+  /// @param exec, islands, model  kept by the caller
+  BodyPipeline(Exec& exec,
+               IslandGradients<Exec>& islands,
+               const Model& model,
+               const StepperOptions& options)
+      : BodyPipeline(exec, islands, model, options, make_system_pattern(model)) {}
 
   void set_state(const ModelState& state) {
     check("positions", count_of(state.position), model_.node_count + model_.rigid_count);
@@ -38,7 +45,7 @@ class BodyPipeline {
     put(numbers_of(state.rotation), now_.rotation);
     put(numbers_of(state.velocity), now_.velocity);
     put(numbers_of(state.angular_momentum), now_.angular_momentum);
-    exec_.resize(now_.previous, nodes);
+    exec_.make_zeros(now_.previous, nodes);
     forget_steps();
   }
   /// Makes the next step compute all rotations and blocks anew.
@@ -64,14 +71,13 @@ class BodyPipeline {
   StepOutcome solve(const StepInput& input) {
     StepOutcome outcome;
     system_.forget();
-    exec_.clear_times();
+    exec_.times().clear();
     upload(input);
     forces(input);
     assemble(input);
     solve(outcome);
-    std::tie(outcome.skipped_rotations, outcome.skipped_blocks) =
-        exec_.count_ones(const_view(now_.tet_is_skipped), const_view(now_.block_is_skipped));
-    exec_.read_times(outcome.seconds);
+    count_skipped(outcome);
+    outcome.seconds = seconds();
     return outcome;
   }
 
@@ -87,13 +93,11 @@ class BodyPipeline {
   }
 
   double move(double time_step, std::span<const double> fraction) {
-    exec_.clear_times();
+    exec_.times().clear();
     fractions_of(model_, fraction, fraction_);
     put(numbers_of(fraction_), now_.fraction);
     update(time_step);
-    StepSeconds seconds;
-    exec_.read_times(seconds);
-    return seconds.total;
+    return seconds().total;
   }
 
   std::vector<Point3> support_impulses() const {
@@ -111,22 +115,25 @@ class BodyPipeline {
  private:
   static constexpr const char* forces_label = "body/forces";
   static constexpr const char* assembly_label = "body/assembly";
-  static constexpr const char* linear_label = "body/linear";
+  static constexpr const char* linear_label = gradient_label();
   static constexpr const char* update_label = "body/update";
+  static constexpr const char* count_label = "body/count";
 
   BodyPipeline(Exec& exec,
+               IslandGradients<Exec>& islands,
                const Model& model,
                const StepperOptions& options,
                const SystemPattern& pattern)
       : exec_(exec),
+        islands_(islands),
         model_(model),
         options_(options),
-        island_start_(pattern.island_start),
         pattern_(exec, pattern),
         constants_(exec, model),
         now_(exec, model, pattern_.rows()),
         solve_(exec, pattern_.rows(), exec.view(now_.values).size, model.rigid_count) {
-    exec_.prepare_solve(island_start_);
+    islands_.set_islands(pattern.island_start);
+    exec_.resize(counts_, 2);
     set_state(model.start);
   }
 
@@ -178,11 +185,10 @@ class BodyPipeline {
     exec_.for_each(forces_label, model_.node_count,
                    NodeMovedBody{position, exec_.view(now_.previous), exec_.view(now_.has_moved)});
     const auto moved = const_view(now_.has_moved);
-    exec_.tet_forces(
-        forces_label,
-        TetForceBody{constants_.tets, position, moved, options_.skip.rotations,
-                     exec_.view(now_.turned), exec_.view(now_.tet_force),
-                     exec_.view(now_.tet_has_turned), exec_.view(now_.tet_is_skipped)});
+    tet_forces(exec_, forces_label,
+               TetForceBody{constants_.tets, position, moved, options_.skip.rotations,
+                            exec_.view(now_.turned), exec_.view(now_.tet_force),
+                            exec_.view(now_.tet_has_turned), exec_.view(now_.tet_is_skipped)});
     exec_.for_each(forces_label, count_of(model_.edges.nodes),
                    EdgeSpringBody{constants_.edge_nodes, constants_.edge_stiffness,
                                   constants_.edge_rest, position, moved, exec_.view(now_.edge_pull),
@@ -209,7 +215,7 @@ class BodyPipeline {
     RigidConstants rigid = constants_.rigid;
     rigid.inertia = const_view(now_.inertia);
     const bool skips = options_.skip.blocks && dt == assembled_time_step_;
-    exec_.assemble(assembly_label,
+    block_assemble(exec_, assembly_label,
                    BlockAssembleBody{rows, from, constants_.scalars, rigid, dt, skips,
                                      exec_.view(now_.values), exec_.view(now_.block_is_skipped)});
     assembled_time_step_ = dt;
@@ -247,12 +253,11 @@ class BodyPipeline {
       const bool is_late = options_.clock != nullptr && iterations > 0 && options_.clock->is_over();
       return outcome.completed && !is_late;
     };
-    exec_.solve_islands(
-        linear_label, island_start_, a, limits, proceed, [&](const GradientEnd& end) {
-          outcome.converged &= end.is_converged;
-          outcome.linear_iterations = std::max(outcome.linear_iterations, end.iterations);
-          outcome.linear_residual = std::max(outcome.linear_residual, end.residual);
-        });
+    islands_.solve(a, limits, proceed, [&](const GradientEnd& end) {
+      outcome.converged &= end.is_converged;
+      outcome.linear_iterations = std::max(outcome.linear_iterations, end.iterations);
+      outcome.linear_residual = std::max(outcome.linear_residual, end.residual);
+    });
     if (!outcome.completed) return;
     exec_.for_each(linear_label, rows.count, BlockVelocityBody{rows, x, exec_.view(now_.velocity)});
   }
@@ -281,22 +286,46 @@ class BodyPipeline {
                                    exec_.view(now_.angular_momentum)});
   }
 
+  /// Rotations and blocks that the skips have left out; a device waits once for both.
+  void count_skipped(StepOutcome& outcome) {
+    const View<const std::uint8_t> tets = const_view(now_.tet_is_skipped);
+    const View<const std::uint8_t> blocks = const_view(now_.block_is_skipped);
+    const View<FlagCount> counts = exec_.view(counts_);
+    exec_.sum_to(count_label, 0, tets.size, FlagCountBody{tets}, &counts[0]);
+    exec_.sum_to(count_label, 0, blocks.size, FlagCountBody{blocks}, &counts[1]);
+    FlagCount totals[2];
+    exec_.get(View<const FlagCount>(counts), totals);
+    outcome.skipped_rotations = totals[0].value;
+    outcome.skipped_blocks = totals[1].value;
+  }
+  StepSeconds seconds() {
+    const StageTimes& times = exec_.times();
+    StepSeconds sums;
+    sums.forces = times.of(forces_label);
+    sums.assembly = times.of(assembly_label);
+    sums.linear = times.of(linear_label);
+    sums.update = times.of(update_label);
+    sums.total = sums.forces + sums.assembly + sums.linear + sums.update;
+    return sums;
+  }
+
   template <class Array>
   auto const_view(const Array& own) const {
     return exec_.view(own);
   }
 
   Exec& exec_;
+  IslandGradients<Exec>& islands_;
   const Model& model_;
   StepperOptions options_;
-  std::vector<std::int32_t> island_start_;
   PatternArrays<Exec> pattern_;
   ConstantArrays<Exec> constants_;
   StepArrays<Exec> now_;
   SolveArrays<Exec, T> solve_;
   HostSystem<Exec> system_;
-  std::vector<double> fraction_;    ///< what now_.fraction holds
-  double assembled_time_step_ = 0;  ///< 0: no blocks are kept
+  typename Exec::template Vector<FlagCount> counts_;  ///< [2] of count_skipped()
+  std::vector<double> fraction_;                      ///< what now_.fraction holds
+  double assembled_time_step_ = 0;                    ///< 0: no blocks are kept
 };
 
 }  // namespace tetwarp

@@ -19,15 +19,15 @@ namespace tetwarp {
 /// Arrays of conjugate gradients in T numbers; for float also the copy of the system.
 template <class Exec, class T>
 struct SolveArrays {
-  typename Exec::template Vector<T> copy, inverse, r, z, p, q;
+  typename Exec::template LargeVector<T> copy, inverse, r, z, p, q;
 
   SolveArrays(Exec& exec,
               const SystemRows& rows,
               std::int64_t value_count,
               std::int64_t rigid_count) {
-    if (sizeof(T) != sizeof(double)) exec.resize(copy, value_count);
-    exec.resize(inverse, 9 * std::int64_t{rows.unknown_count} + 36 * rigid_count);
-    for (auto* array : {&r, &z, &p, &q}) exec.resize(*array, 3 * std::int64_t{rows.count});
+    if (sizeof(T) != sizeof(double)) exec.make_zeros(copy, value_count);
+    exec.make_zeros(inverse, 9 * std::int64_t{rows.unknown_count} + 36 * rigid_count);
+    for (auto* array : {&r, &z, &p, &q}) exec.make_zeros(*array, 3 * std::int64_t{rows.count});
   }
 
   GradientArrays<T> views(Exec& exec,
@@ -92,7 +92,7 @@ class HostSystem {
   /// To be called before the system changes.
   void forget() { has_values_ = false; }
   SystemRows rows(const Model& model, const SystemRows& own) {
-    if constexpr (Exec::is_on_host) {
+    if constexpr (Exec::reads_are_free) {
       return own;
     } else {
       if (!pattern_) pattern_ = make_system_pattern(model);
@@ -106,7 +106,7 @@ class HostSystem {
                  View<const double> load,
                  View<const double> x) {
     const std::int64_t numbers = 9 * rows.column.size;
-    if constexpr (Exec::is_on_host) {
+    if constexpr (Exec::reads_are_free) {
       return {rows, {values.data, numbers}, load, x};
     } else {
       const SystemRows own = this->rows(model, rows);

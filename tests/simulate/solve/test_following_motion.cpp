@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "host/simulate/solve/problem/following_motion.hpp"
 #include "tests/simulate/usable_stages.hpp"
 
@@ -78,10 +78,10 @@ class Iteration {
 };
 
 TEST(FollowingMotion, IsTheMotionByTheAcceleratedVector) {
-  using Direction = ConjugateDirection<CpuContactExec, double>;
+  using Direction = ConjugateDirection<CpuExec, double>;
   const Iteration iteration;
   constexpr std::size_t size = Iteration::size;
-  CpuContactExec exec(1);
+  CpuExec exec(1);
   const std::vector<double> weights(size, 2.0);
   std::vector<double> work(Direction::columns * size), x(size, 0.3);
   Direction direction(exec, {weights.data(), size}, {work.data(), Direction::columns * size});

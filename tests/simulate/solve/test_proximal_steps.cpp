@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/proximal_step.hpp"
 #include "tests/simulate/random_contacts.hpp"
 
@@ -29,7 +29,7 @@ Majorants majorants_of(const RandomContacts& contacts) {
   std::vector<double> vector = diagonal;
   std::vector<double> push(static_cast<std::size_t>(3 * touching.bodies.row_of_node.size));
   std::vector<double> before = push, after = push;
-  CpuContactExec exec(1);
+  CpuExec exec(1);
   set_majorants(exec, touching,
                 {view(result.constants), view(result.majorant), view(result.scale), view(diagonal),
                  view(vector), view(push), view(before), view(after)});
@@ -131,7 +131,7 @@ class Steps {
   }
   /// @returns the sums of the last one of eight steps
   const ProximalState::Sums& run() {
-    CpuContactExec exec(1);
+    CpuExec exec(1);
     for (int step = 0; step < ProximalState::steps_at_once; ++step) {
       exec.for_each("", static_cast<std::int64_t>(of_.constants.size()),
                     ProximalStepBody{touching_,
@@ -158,7 +158,7 @@ class Steps {
     return state_.sums;
   }
   void grow() {
-    CpuContactExec exec(1);
+    CpuExec exec(1);
     exec.for_each("", static_cast<std::int64_t>(of_.majorant.size()),
                   MajorantGrowBody{view(of_.majorant)});
     begin();

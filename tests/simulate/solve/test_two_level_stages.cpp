@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/proximal_step.hpp"
 #include "tests/simulate/random_step.hpp"
 
@@ -26,7 +26,7 @@ View<double> write(Vector& values) {
 
 template <class Body>
 void each(std::int64_t count, const Body& body) {
-  CpuContactExec(1).for_each("", count, body);
+  CpuExec(1).for_each("", count, body);
 }
 void expect_near(const Vector& found, const Vector& expected, double tolerance = 1e-13) {
   ASSERT_EQ(found.size(), expected.size());
@@ -154,7 +154,7 @@ TEST(TwoLevelStages, ErrorsAreScalarProducts) {
       constants[index_of(c)].block[0] = 2;  // frictionless: min(r, u / 2)^2 2
       natural += 2 * std::pow(std::min(a[3 * c], b[3 * c] / 2), 2);
     }
-    CpuContactExec exec(1);
+    CpuExec exec(1);
     const auto square =
         exec.sum<PlainSums<1>>("", 0, 3 * s.size, DefectSquareBody{read(a), read(b)});
     const auto error = exec.sum<PlainSums<2>>(

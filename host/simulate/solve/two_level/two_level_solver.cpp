@@ -9,7 +9,7 @@
 
 #include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/anderson.hpp"
 
 namespace tetwarp {
@@ -88,8 +88,8 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
                                             bool ends_early,
                                             TwoLevelOutcome& outcome) {
   const std::int64_t begin = step_.begin(), size = step_.end() - begin;
-  CpuContactExec exec(threads_);
-  using Mixer = AndersonMixer<CpuContactExec, double>;
+  CpuExec exec(threads_, StageClocks::off);
+  using Mixer = AndersonMixer<CpuExec, double>;
   mixed_.resize(index_of(Mixer::columns * size));
   Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
   contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "host/base/index_of.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
+#include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/anderson.hpp"
 
 namespace tetwarp {
@@ -71,7 +71,7 @@ void TwoLevelSweeps::sweep_accelerated(const std::vector<std::int32_t>& list,
                                        const Follow& follow,
                                        Progress& progress) {
   const auto size = static_cast<std::int64_t>(3 * list.size());
-  CpuContactExec exec(threads_);
+  CpuExec exec(threads_, StageClocks::off);
   accelerated_.resize(index_of(Accelerator::columns * size));
   listed_diagonal_.clear();
   for (const std::int32_t contact : list) {
@@ -100,8 +100,8 @@ void TwoLevelSweeps::sweep_accelerated(const std::vector<std::int32_t>& list,
 /// bodies do, whose velocities determine them poorly. Springs, which hold cloth, are linear:
 /// Anderson acceleration finds their impulses sooner.
 void TwoLevelSweeps::sweep_listed(const std::vector<std::int32_t>& list, Progress& progress) {
-  using Directions = ConjugateDirection<CpuContactExec, double>;
-  using Mixer = AndersonMixer<CpuContactExec, double>;
+  using Directions = ConjugateDirection<CpuExec, double>;
+  using Mixer = AndersonMixer<CpuExec, double>;
   moved_places_.clear();
   if (has_elastic_) sweep_.list_moved(list, moved_places_);
   motion_.start(moved_places_);

@@ -2,7 +2,9 @@
 /// make_cpu_stepper(): BodyPipeline on host threads.
 #include "host/base/warp_backend.hpp"
 #include "host/simulate/step/body_pipeline.hpp"
-#include "host/simulate/step/cpu/step_exec_cpu.hpp"
+#include "host/simulate/step/cpu/island_gradients_cpu.hpp"
+#include "host/simulate/step/cpu/rest_gradients.hpp"
+#include "host/simulate/step/cpu/stages_cpu.hpp"
 
 namespace tetwarp {
 namespace {
@@ -11,8 +13,9 @@ class CpuStepper final : public BodyStepper {
  public:
   CpuStepper(const Model& model, const StepperOptions& options)
       : rest_(model, options.factors),
-        exec_(thread_count(options.threads), rest_),
-        pipeline_(exec_, model, options) {}
+        exec_(thread_count(options.threads)),
+        islands_(exec_, rest_),
+        pipeline_(exec_, islands_, model, options) {}
 
   std::string device() const override { return processor_name(); }
   void set_state(const ModelState& state) override { pipeline_.set_state(state); }
@@ -38,8 +41,9 @@ class CpuStepper final : public BodyStepper {
 
  private:
   RestGradients rest_;
-  CpuStepExec exec_;
-  BodyPipeline<CpuStepExec, T> pipeline_;
+  CpuExec exec_;
+  IslandGradients<CpuExec> islands_;
+  BodyPipeline<CpuExec, T> pipeline_;
 };
 }  // namespace
 

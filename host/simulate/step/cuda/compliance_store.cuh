@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/simulate/step/cpu/rest_factors.hpp"
-#include "host/simulate/step/cuda/step_exec_cuda.cuh"
 #include "kernels/contact/compliant_body.hpp"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
@@ -21,7 +21,7 @@ class ComplianceStore {
   /// Sets CompliantBody::inverse of elastic bodies; computes what is not there yet.
   /// @param factors     set to the length of the step
   /// @param model_body  [frames] numbers of elastic bodies in the model
-  void set_inverses(CudaStepExec& exec,
+  void set_inverses(CudaExec& exec,
                     RestFactors& factors,
                     double time_step,
                     const std::vector<std::int32_t>& model_body,
@@ -34,7 +34,7 @@ class ComplianceStore {
       if (found == own.of_body.end()) {
         DeviceVector<float> inverse;
         factors.of_body(number).inverse(host_);
-        exec.put(host_.data(), static_cast<std::int64_t>(host_.size()), inverse);
+        exec.put(host_, inverse);
         exec.wait();  // for the copy, before the next one
         found = own.of_body.emplace(number, std::move(inverse)).first;
       }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "host/simulate/step/body_pipeline.hpp"
-#include "host/simulate/step/cuda/step_exec_cuda.cuh"
 #include "host/simulate/step/resident_contacts.hpp"
 
 namespace tetwarp {
@@ -17,17 +16,17 @@ template <class T>
 class CudaResidentContacts final : public ResidentContacts {
  public:
   /// @param exec, pipeline  kept by the caller
-  CudaResidentContacts(CudaStepExec& exec, BodyPipeline<CudaStepExec, T>& pipeline)
+  CudaResidentContacts(CudaExec& exec, BodyPipeline<CudaExec, T>& pipeline)
       : exec_(exec), pipeline_(pipeline) {}
 
   SystemRows rows() override { return pipeline_.host_rows(); }
 
   void set_places(const ProblemPlaces& places) override {
     const DeviceScope scope = exec_.enter();
-    put(places.blocks, blocks_);
-    put(places.rows, rows_);
-    put(places.model_block, model_block_);
-    put(places.arms, arm_places_);
+    exec_.put(places.blocks, blocks_);
+    exec_.put(places.rows, rows_);
+    exec_.put(places.model_block, model_block_);
+    exec_.put(places.arms, arm_places_);
     system_.resize(places.system_size);
     jacobian_.resize(places.jacobian_size);
     load_.resize(3 * count_of(places.rows));
@@ -54,7 +53,7 @@ class CudaResidentContacts final : public ResidentContacts {
         {adhesion.gap, &of.gap}};
     staged_.clear();
     for (const auto& [from, to] : all) staged_.insert(staged_.end(), from.begin(), from.end());
-    put(staged_, given_);
+    exec_.put(staged_, given_);
     const double* next = given_.view().data;
     for (const auto& [from, to] : all) {
       *to = {next, from.size()};
@@ -66,7 +65,7 @@ class CudaResidentContacts final : public ResidentContacts {
                                    {reinterpret_cast<const ContactArm*>(arms.data()), arm_count},
                                    view(arm_places_),
                                    jacobian_.view()});
-    const StepArrays<CudaStepExec>& now = pipeline_.arrays();
+    const StepArrays<CudaExec>& now = pipeline_.arrays();
     exec_.for_each(label, view(blocks_).size,
                    SystemGatherBody{view(blocks_), view(now.values), system_.view()});
     exec_.for_each(label, view(rows_).size,
@@ -120,13 +119,8 @@ class CudaResidentContacts final : public ResidentContacts {
   View<Value> body_velocity(View<Value> all) const {
     return part(all, 2 * contact_numbers_, all.size - 2 * contact_numbers_);
   }
-  template <class Value>
-  void put(const std::vector<Value>& host, DeviceVector<Value>& own) {
-    exec_.put(host.data(), count_of(host), own);
-  }
-
-  CudaStepExec& exec_;
-  BodyPipeline<CudaStepExec, T>& pipeline_;
+  CudaExec& exec_;
+  BodyPipeline<CudaExec, T>& pipeline_;
   DeviceVector<SystemBlockPlace> blocks_;
   DeviceVector<std::int32_t> rows_, model_block_;
   DeviceVector<ArmPlace> arm_places_;

@@ -8,7 +8,6 @@
 
 #include "host/simulate/step/body_pipeline.hpp"
 #include "host/simulate/step/cuda/impulse_segments.cuh"
-#include "host/simulate/step/cuda/step_exec_cuda.cuh"
 #include "host/simulate/step/resident_state.hpp"
 #include "kernels/body/step_summary.hpp"
 
@@ -17,7 +16,7 @@ namespace tetwarp {
 template <class T>
 class CudaResidentState final : public ResidentState {
  public:
-  using Exec = CudaStepExec;
+  using Exec = CudaExec;
 
   /// @param exec, model, pipeline  kept by the caller
   CudaResidentState(Exec& exec, const Model& model, BodyPipeline<Exec, T>& pipeline)
@@ -27,22 +26,22 @@ class CudaResidentState final : public ResidentState {
         constants_(pipeline.constants()),
         now_(pipeline.arrays()),
         segments_(model) {
-    exec_.put(segments_.runs.data(), count_of(segments_.runs), runs_);
-    exec_.put(segments_.segments.data(), count_of(segments_.segments), of_segments_);
+    exec_.put(segments_.runs, runs_);
+    exec_.put(segments_.segments, of_segments_);
     run_sums_.resize(count_of(segments_.runs));
     sums_.resize(count_of(segments_.segments));
     host_sums_.reserve(count_of(segments_.segments));
-    checks_.resize((terms() + sum_run - 1) / sum_run + 1);
+    check_.resize(1);
     host_check_.reserve(1);
   }
 
   void save() override {
     const DeviceScope scope = exec_.enter();
-    for_each_part([&](auto& own, auto& saved) { exec_.copy(own, saved); });
+    for_each_part([&](auto& own, auto& saved) { exec_.keep(view(own), saved); });
   }
   void restore() override {
     const DeviceScope scope = exec_.enter();
-    for_each_part([&](auto& own, auto& saved) { exec_.copy(saved, own); });
+    for_each_part([&](auto& own, auto& saved) { exec_.keep(view(saved), own); });
     pipeline_.forget_steps();
   }
 
@@ -53,15 +52,9 @@ class CudaResidentState final : public ResidentState {
                                  {view(now_.centre), view(now_.rotation)},
                                  view(now_.angular_momentum),
                                  constants_.moments};
-    const View<StateCheck> of_runs = checks_.view();
-    const std::int64_t count = of_runs.size - 1;
-    if (count > 0) {
-      DeviceSums::launch_sums(exec_.stream(), 0, terms(), sum_run, body, of_runs);
-    }
-    const View<StateCheck> total = {of_runs.data + count, 1};
-    DeviceSums::launch_sums(exec_.stream(), 0, count, count, ReadySums<StateCheck>{of_runs}, total);
+    exec_.sum_to(label, 0, terms(), body, check_.view().data);
     StateCheck* const result = host_check_.view(1).data;
-    exec_.get(View<const StateCheck>{total.data, 1}, result);
+    exec_.get(view(check_), result);
     return *result;
   }
 
@@ -82,8 +75,8 @@ class CudaResidentState final : public ResidentState {
 
   void watch(const StatePlaces& places) override {
     const DeviceScope scope = exec_.enter();
-    exec_.put(places.nodes.data(), count_of(places.nodes), watched_nodes_);
-    exec_.put(places.rigid.data(), count_of(places.rigid), watched_rigid_);
+    exec_.put(places.nodes, watched_nodes_);
+    exec_.put(places.rigid, watched_rigid_);
     places_.resize(3 * count_of(places.nodes) + 7 * count_of(places.rigid));
     host_places_.resize(static_cast<std::size_t>(view(places_).size));
     watched_ = places;
@@ -172,7 +165,7 @@ class CudaResidentState final : public ResidentState {
   DeviceVector<SumRun> runs_, of_segments_;
   DeviceVector<ImpulseSums> run_sums_, sums_;
   PinnedBuffer<ImpulseSums> host_sums_;
-  DeviceVector<StateCheck> checks_;
+  DeviceVector<StateCheck> check_;
   PinnedBuffer<StateCheck> host_check_;
   StatePlaces watched_;
   DeviceVector<std::int32_t> watched_nodes_, watched_rigid_;

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "host/simulate/step/body_arrays.hpp"
-#include "host/simulate/step/cuda/step_exec_cuda.cuh"
 #include "host/simulate/step/resident_surfaces.hpp"
 #include "kernels/body/surface_move.hpp"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
 
 class CudaResidentSurfaces final : public ResidentSurfaces {
  public:
   /// @param exec, model, now  kept by the caller
-  CudaResidentSurfaces(CudaStepExec& exec, const Model& model, const StepArrays<CudaStepExec>& now)
+  CudaResidentSurfaces(CudaExec& exec, const Model& model, const StepArrays<CudaExec>& now)
       : exec_(exec), model_(model), now_(now) {}
 
   void begin(const SurfaceBinding& surfaces) override {
@@ -100,14 +100,14 @@ class CudaResidentSurfaces final : public ResidentSurfaces {
     is_bound_ = true;
   }
 
-  CudaStepExec& exec_;
+  CudaExec& exec_;
   const Model& model_;
-  const StepArrays<CudaStepExec>& now_;
+  const StepArrays<CudaExec>& now_;
   bool is_bound_ = false;
   DeviceVector<SurfacePoint> points_;
   DeviceVector<std::int32_t> body_rigid_, plane_rigid_, plane_body_;
   DeviceVector<double> plane_local_;
-  CudaStepExec::Input<double> velocity_, fraction_;
+  CudaExec::Input<double> velocity_, fraction_;
   DeviceVector<MovedFrame> moved_;
   DeviceVector<double> start_, end_, sagitta_, plane_start_, plane_end_, frames_;
 };

@@ -15,9 +15,9 @@ template <class T>
 class CudaResidentTwoLevel final : public ResidentTwoLevel {
  public:
   /// @param exec, model, pipeline, surfaces  kept by the caller
-  CudaResidentTwoLevel(CudaStepExec& exec,
+  CudaResidentTwoLevel(CudaExec& exec,
                        const Model& model,
-                       BodyPipeline<CudaStepExec, T>& pipeline,
+                       BodyPipeline<CudaExec, T>& pipeline,
                        CudaResidentSurfaces& surfaces)
       : exec_(exec),
         pipeline_(pipeline),
@@ -55,8 +55,8 @@ class CudaResidentTwoLevel final : public ResidentTwoLevel {
   }
 
  private:
-  CudaStepExec& exec_;
-  BodyPipeline<CudaStepExec, T>& pipeline_;
+  CudaExec& exec_;
+  BodyPipeline<CudaExec, T>& pipeline_;
   CudaResidentSurfaces& surfaces_;
   TwoLevelIteration iteration_;
   std::size_t contact_numbers_ = 0;

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "host/simulate/step/body_pipeline.hpp"
+#include "host/simulate/step/cuda/island_gradients_cuda.cuh"
 #include "host/simulate/step/cuda/resident_contacts_cuda.cuh"
 #include "host/simulate/step/cuda/resident_state_cuda.cuh"
 #include "host/simulate/step/cuda/resident_surfaces_cuda.cuh"
 #include "host/simulate/step/cuda/resident_two_level_cuda.cuh"
-#include "host/simulate/step/cuda/step_exec_cuda.cuh"
 #include "host/simulate/step/device_stepper.hpp"
 
 namespace tetwarp {
@@ -19,7 +19,8 @@ class CudaStepper final : public DeviceStepper {
  public:
   CudaStepper(const Model& model, const StepperOptions& options, std::string name)
       : exec_(options.device),
-        pipeline_(exec_, model, options),
+        islands_(exec_),
+        pipeline_(exec_, islands_, model, options),
         resident_(exec_, model, pipeline_),
         contacts_(exec_, pipeline_),
         surfaces_(exec_, model, pipeline_.arrays()),
@@ -70,8 +71,9 @@ class CudaStepper final : public DeviceStepper {
   ResidentTwoLevel& resident_two_level() override { return two_level_; }
 
  private:
-  mutable CudaStepExec exec_;  ///< reads need its stream
-  BodyPipeline<CudaStepExec, T> pipeline_;
+  mutable CudaExec exec_;  ///< reads need its stream
+  IslandGradients<CudaExec> islands_;
+  BodyPipeline<CudaExec, T> pipeline_;
   CudaResidentState<T> resident_;
   CudaResidentContacts<T> contacts_;
   CudaResidentSurfaces surfaces_;

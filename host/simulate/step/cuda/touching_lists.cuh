@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "host/simulate/solve/two_level/compliant_lists.hpp"
-#include "host/simulate/step/cuda/step_exec_cuda.cuh"
-#include "kernels/contact/contact_grid.cuh"
 #include "kernels/contact/majorant.hpp"
 #include "kernels/contact/touch_lists.hpp"
+#include "kernels/exec/exec_cuda.cuh"
 #include "kernels/exec/staged_arrays.cuh"
 
 namespace tetwarp {
@@ -26,52 +25,49 @@ class TouchingLists {
  public:
   /// Copies the bodies of a solve to the device; their lists only if they have changed.
   /// @param bodies  those of the lists, with inverses
-  void set_bodies(GridContactExec& grid,
+  void set_bodies(CudaExec& exec,
                   const CompliantLists& lists,
                   const std::vector<CompliantBody>& bodies) {
-    grid.put(bodies.data(), static_cast<std::int64_t>(bodies.size()), bodies_);
+    exec.put(bodies, bodies_);
     if (lists.version == version_) return;
     std::tie(body_of_row_, system_row_, model_block_, diagonal_rows_, row_of_block_) =
-        lists_.put(grid, lists.body_of_row, lists.system_row, lists.model_block,
+        lists_.put(exec, lists.body_of_row, lists.system_row, lists.model_block,
                    lists.diagonal_rows, lists.row_of_block);
     version_ = lists.version;
   }
 
   /// Makes the lists of contacts on these bodies.
-  void make(CudaStepExec& exec,
-            GridContactExec& grid,
-            const SurfacesOnDevice& surfaces,
-            View<const ContactSides> contacts) {
+  void make(CudaExec& exec, const SurfacesOnDevice& surfaces, View<const ContactSides> contacts) {
     const TouchListInput in = {contacts,
                                {surfaces.points, surfaces.centre, surfaces.node_count},
                                row_of_block_,
                                body_of_row_};
     const std::int64_t rows = body_of_row_.size;
     const View<CompliantBody> bodies = bodies_.view();
-    grid.resize(sums_, TouchSums::size(contacts.size, rows));
+    exec.make_zeros(sums_, TouchSums::size(contacts.size, rows));
     squares_.resize(bodies.size + 1);
     totals_.resize(1);
     const TouchSums counted = {sums_.view(), contacts.size};
-    grid.for_each(label, contacts.size, TouchCountBody{in, counted});
-    exec.device_exec().exclusive_scan(label, sums_.view());
-    grid.for_each(label, bodies.size + 1, BodyNodesBody{counted, bodies, squares_.view()});
-    exec.device_exec().exclusive_scan(label, squares_.view());
-    grid.once(label, TouchTotalsBody{counted, rows, const_view(squares_), totals_.view().data});
-    const TouchTotals totals = grid.load(totals_.view().data);
+    exec.for_each(label, contacts.size, TouchCountBody{in, counted});
+    exec.exclusive_scan(label, sums_.view());
+    exec.for_each(label, bodies.size + 1, BodyNodesBody{counted, bodies, squares_.view()});
+    exec.exclusive_scan(label, squares_.view());
+    exec.once(label, TouchTotalsBody{counted, rows, const_view(squares_), totals_.view().data});
+    const TouchTotals totals = exec.load(totals_.view().data);
     node_pairs_ = totals.node_pairs;
     resize(contacts.size, totals);
-    grid.for_each(label, rows + 1,
+    exec.for_each(label, rows + 1,
                   NodeListBody{counted, body_of_row_, const_view(squares_), bodies,
                                row_of_node_.view(), pair_start_.view()});
-    grid.for_each(
+    exec.for_each(
         label, contacts.size + 1,
         TouchListBody{in, counted, bodies, block_start_.view(), part_start_.view(), row_.view(),
                       node_.view(), contact_.view(), part_.view(), part_block_.view(),
                       part_body_.view(), jacobian_.view(), touches_.view()});
     int bits = 1;
     while (rows >> bits > 0) ++bits;
-    exec.device_exec().sort_pairs(label, touches_.view(), {}, bits);
-    grid.for_each(label, std::max(rows + 1, totals.blocks),
+    exec.sort_pairs(label, touches_.view(), {}, bits);
+    exec.for_each(label, std::max(rows + 1, totals.blocks),
                   RowTouchesBody{const_view(touches_), touch_start_.view(), touch_.view()});
   }
 

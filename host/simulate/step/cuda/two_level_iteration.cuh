@@ -19,19 +19,18 @@ namespace tetwarp {
 /// at once. The host reads the sums of an error once per outer iteration and per eight steps.
 class TwoLevelIteration {
  public:
-  /// @param exec                     kept by the caller
+  /// @param exec                     whose streams are used
   /// @param node_count, rigid_count  of the model
-  TwoLevelIteration(CudaStepExec& exec, std::int64_t node_count, std::int64_t rigid_count)
-      : exec_(exec),
-        grid_(exec.device_exec()),
-        run_grid_(exec.device_exec()),
+  TwoLevelIteration(const CudaExec& exec, std::int64_t node_count, std::int64_t rigid_count)
+      : exec_(exec, StageClocks::off),
+        run_exec_(exec, StageClocks::off),
         numbers_(node_count, rigid_count) {}
 
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
   /// @param points  of the surfaces, there
   TwoLevelOutcome solve(const SystemRows& rows,
-                        const StepArrays<CudaStepExec>& arrays,
+                        const StepArrays<CudaExec>& arrays,
                         View<const SurfacePoint> points,
                         const CompliantLists& lists,
                         const TwoLevelStart& start,
@@ -41,7 +40,7 @@ class TwoLevelIteration {
     lists_ = &lists;
     options_ = &options;
     switches_ = {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
-    numbers_.set(exec_, grid_, rows, arrays, points, lists, start, factors);
+    numbers_.set(exec_, rows, arrays, points, lists, start, factors);
     resize();
     TwoLevelOutcome outcome;
     End end = End::diverges;
@@ -63,7 +62,7 @@ class TwoLevelIteration {
 
  private:
   enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
-  using Mixer = AndersonMixer<GridContactExec, double>;
+  using Mixer = AndersonMixer<CudaExec, double>;
   using Vector = DeviceVector<double>;
   /// Sums that the host reads together.
   struct Sums {
@@ -89,7 +88,7 @@ class TwoLevelIteration {
 
   template <class Body>
   void for_each(std::int64_t count, const Body& body) {
-    grid_.for_each(label, count, body);
+    exec_.for_each(label, count, body);
   }
 
   void resize() {
@@ -113,23 +112,23 @@ class TwoLevelIteration {
   /// Starts from the velocities without contact.
   void prepare(double damping) {
     run_.restart();
-    numbers_.set_damping(exec_, grid_, damping);
-    grid_.copy(label, numbers_.start_velocity(), velocity());
+    numbers_.set_damping(exec_, damping);
+    exec_.copy(label, numbers_.start_velocity(), velocity());
     for_each(contact_numbers_ / 3,
              TouchVelocityBody{rows(), numbers_.start_velocity(), free_velocity_.view()});
     step(numbers_.preload());
-    least_error_ = TwoLevelError::least(grid_.load(&sums_.view().data->defect).value[0]);
+    least_error_ = TwoLevelError::least(exec_.load(&sums_.view().data->defect).value[0]);
     if (numbers_.change().size > 0) {
       for_each(row_numbers_, AddNumbersBody{numbers_.change(), velocity()});
     }
-    grid_.copy(label, numbers_.start_impulse(), impulse());
+    exec_.copy(label, numbers_.start_impulse(), impulse());
   }
 
   /// image = velocity + M^-1 d, d = b + J^T (r - preload) - A velocity; sums d . M^-1 d.
   void step(View<const double> r) {
     for_each(row_numbers_ / 3, numbers_.defect(velocity(), r, defect_.view()));
     move(velocity());
-    grid_.sum_to(label, 0, row_numbers_, DefectSquareBody{const_view(defect_), const_view(moved_)},
+    exec_.sum_to(label, 0, row_numbers_, DefectSquareBody{const_view(defect_), const_view(moved_)},
                  &sums_.view().data->defect);
   }
   /// image = from + M^-1 of what is in `defect_`.
@@ -138,7 +137,7 @@ class TwoLevelIteration {
     for_each(row_numbers_ / 3, RowMoveBody{bodies(), const_view(moved_), from, image_.view()});
   }
   void sum_error(View<const double> r, View<const double> u) {
-    grid_.sum_to(label, 0, contact_numbers_ / 3,
+    exec_.sum_to(label, 0, contact_numbers_ / 3,
                  TouchErrorBody{numbers_.constants(), switches_, r, u, const_view(free_velocity_)},
                  &sums_.view().data->error);
   }
@@ -149,7 +148,7 @@ class TwoLevelIteration {
              NodeVelocityBody{bodies(), const_view(image_), node_start_.view()});
     for_each(contact_numbers_ / 3, TouchVelocityBody{rows(), velocity(), contact_velocity()});
     sum_error(impulse(), contact_velocity());
-    const Sums sums = grid_.load(sums_.view().data);
+    const Sums sums = exec_.load(sums_.view().data);
     TwoLevelError error =
         TwoLevelError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
     // Rounding may make inverses of very stiff bodies indefinite; then the host has to solve.
@@ -160,13 +159,13 @@ class TwoLevelIteration {
   /// @param ends_early  where it diverges
   End iterate(bool ends_early, TwoLevelOutcome& outcome) {
     using Next = TwoLevelControl::Next;
-    Mixer mixer(grid_, numbers_.weight(), mixed_.view());
-    grid_.resize(none_, contact_numbers_);  // zeros
+    Mixer mixer(exec_, numbers_.weight(), mixed_.view());
+    exec_.make_zeros(none_, contact_numbers_);  // zeros
     sum_error(const_view(none_), const_view(free_velocity_));
     TwoLevelControl control({.has_elastic = has_elastic(),
                              .ends_early = ends_early,
                              .tolerance = options_->tolerance,
-                             .natural_alone = grid_.load(sums_.view().data).error.value[0],
+                             .natural_alone = exec_.load(sums_.view().data).error.value[0],
                              .few_sweeps = ProximalState::steps_at_once,
                              .least_error = least_error_});
     while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
@@ -176,7 +175,7 @@ class TwoLevelIteration {
       if (next == Next::converges) return End::converges;
       if (next == Next::diverges) return End::diverges;
       if (outcome.sweeps > most_of_solve) return End::fails;
-      grid_.copy(label, View<const double>(impulse()), stepped_.view());
+      exec_.copy(label, View<const double>(impulse()), stepped_.view());
       outcome.sweeps += step_contacts(control.enough());
       ++outcome.outer_iterations;
       for_each(row_numbers_ / 3,
@@ -186,7 +185,7 @@ class TwoLevelIteration {
         mixer.observe(velocity(), const_view(image_));
         mixer.advance(velocity(), image_.view());
       }
-      grid_.copy(label, const_view(image_), velocity());
+      exec_.copy(label, const_view(image_), velocity());
       if (options_->progress && !options_->progress({clock_.seconds(), outcome.sweeps, 0})) {
         return End::is_stopped;
       }
@@ -202,33 +201,33 @@ class TwoLevelIteration {
     int growths = 0;
     for (std::int64_t steps = count;; steps += count) {
       make_run(state);
-      const ProximalState::Sums sums = grid_.load(&state->sums);
+      const ProximalState::Sums sums = exec_.load(&state->sums);
       const double laws = TwoLevelError::of(0, sums.value[0], 0).laws;
       if (laws <= enough || steps >= most_steps) return steps;
       if (growths < most_growths && ProximalState::has_missed(sums)) {
         ++growths;
-        numbers_.grow_majorants(grid_);
+        numbers_.grow_majorants(exec_);
         start_steps(state);
       } else {
-        grid_.once(label, ProximalDecideBody{state});
+        exec_.once(label, ProximalDecideBody{state});
       }
     }
   }
   /// Eight steps and their sums.
   void make_run(ProximalState* state) {
-    run_.launch(exec_.device_exec().stream(), [&] {
+    run_.launch(exec_.stream(), [&] {
       for (int step = 0; step < ProximalState::steps_at_once; ++step) {
         step_contacts_once(state, step);
       }
-      run_grid_.sum_to(label, 0, terms_.view().size, ReadySums<ProximalState::Sums>{terms_.view()},
+      run_exec_.sum_to(label, 0, terms_.view().size, ReadySums<ProximalState::Sums>{terms_.view()},
                        &state->sums);
     });
   }
   void start_steps(ProximalState* state) {
-    grid_.once(label, ProximalStartBody{state});
-    grid_.copy(label, const_view(stepped_), impulse());
-    grid_.copy(label, const_view(stepped_), ahead_.view());
-    grid_.copy(label, const_view(node_start_), node_velocity_.view());
+    exec_.once(label, ProximalStartBody{state});
+    exec_.copy(label, const_view(stepped_), impulse());
+    exec_.copy(label, const_view(stepped_), ahead_.view());
+    exec_.copy(label, const_view(node_start_), node_velocity_.view());
   }
   void step_contacts_once(const ProximalState* state, int step) {
     const TouchingNodes& touching = numbers_.touching();
@@ -242,9 +241,8 @@ class TwoLevelIteration {
                                              node_velocity_.view()});
   }
 
-  CudaStepExec& exec_;
-  GridContactExec grid_;
-  GridContactExec run_grid_;  ///< of recorded runs: its sums stay where they are
+  CudaExec exec_;
+  CudaExec run_exec_;  ///< of recorded runs: its sums stay where they are
   TwoLevelNumbers numbers_;
   const CompliantLists* lists_ = nullptr;    ///< of the present solve
   const ContactOptions* options_ = nullptr;  ///< of the present solve

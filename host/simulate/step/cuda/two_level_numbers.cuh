@@ -24,20 +24,18 @@ class TwoLevelNumbers {
   /// numbers of the system there.
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
-  void set(CudaStepExec& exec,
-           GridContactExec& grid,
+  void set(CudaExec& exec,
            const SystemRows& rows,
-           const StepArrays<CudaStepExec>& arrays,
+           const StepArrays<CudaExec>& arrays,
            View<const SurfacePoint> points,
            const CompliantLists& lists,
            const TwoLevelStart& start,
            RestFactors& factors) {
     host_bodies_ = lists.bodies;
     store_.set_inverses(exec, factors, start.time_step, lists.model_body, host_bodies_);
-    lists_.set_bodies(grid, lists, host_bodies_);
-    upload(grid, start);
-    lists_.make(exec, grid,
-                {points, exec.view(arrays.centre), static_cast<std::int32_t>(node_count_)},
+    lists_.set_bodies(exec, lists, host_bodies_);
+    upload(exec, start);
+    lists_.make(exec, {points, exec.view(arrays.centre), static_cast<std::int32_t>(node_count_)},
                 contacts_);
     lists_.set(touching_);
     rows_ = rows;
@@ -50,18 +48,18 @@ class TwoLevelNumbers {
     start_velocity_.resize(numbers);
     weight_.resize(numbers);
     bodies.diagonal = {rows.pair, rows.block_of, rows.unknown_count, node_count_, inverse_.view()};
-    grid.for_each(label, lists_.diagonal_rows().size,
+    exec.for_each(label, lists_.diagonal_rows().size,
                   DiagonalInvertBody{lists_.diagonal_rows(), {rows, values_, bodies.diagonal}});
-    grid.for_each(label, blocks, TurnJacobianBody{bodies, touching_.rows, turned_.view()});
+    exec.for_each(label, blocks, TurnJacobianBody{bodies, touching_.rows, turned_.view()});
     touching_.turned = const_view(turned_);
-    grid.for_each(label, numbers / 3,
+    exec.for_each(label, numbers / 3,
                   RowStartBody{lists_.system_row(), rows, values_, exec.view(arrays.x),
                                start_velocity_.view(), weight_.view()});
   }
 
   /// Computes the compliance of the bodies, the blocks of the contacts and their majorants.
   /// @param damping  factor of the compliance of elastic bodies
-  void set_damping(CudaStepExec& exec, GridContactExec& grid, double damping) {
+  void set_damping(CudaExec& exec, double damping) {
     CompliantBodies& bodies = touching_.bodies;
     const std::int64_t contacts = laws_.size, parts = touching_.part_body.size;
     const std::int64_t nodes = bodies.row_of_node.size;
@@ -73,18 +71,18 @@ class TwoLevelNumbers {
     vector_.resize(3 * parts);
     scale_.resize(bodies.bodies.size);
     for (DeviceVector<double>* v : {&push_, &before_, &after_}) v->resize(3 * nodes);
-    exec.device_exec().for_each_item(label, lists_.pair_start(), lists_.node_pairs(),
-                                     ComplianceBlockBody{bodies, compliance_.view()});
+    exec.for_each_item(label, lists_.pair_start(), lists_.node_pairs(),
+                       ComplianceBlockBody{bodies, compliance_.view()});
     bodies.compliance = View<const float>(compliance_.view());
-    grid.copy(label, laws_, constants_.view());
-    set_majorants(grid, touching_,
+    exec.copy(label, laws_, constants_.view());
+    set_majorants(exec, touching_,
                   {constants_.view(), majorant_.view(), scale_.view(), part_diagonal_.view(),
                    vector_.view(), push_.view(), before_.view(), after_.view()});
   }
 
   /// Doubles the majorants.
-  void grow_majorants(GridContactExec& grid) {
-    grid.for_each(label, majorant_.view().size, MajorantGrowBody{majorant_.view()});
+  void grow_majorants(CudaExec& exec) {
+    exec.for_each(label, majorant_.view().size, MajorantGrowBody{majorant_.view()});
   }
 
   const TouchingNodes& touching() const { return touching_; }
@@ -109,14 +107,14 @@ class TwoLevelNumbers {
   static constexpr const char* label = "body/contact";
 
   /// In one transfer.
-  void upload(GridContactExec& grid, const TwoLevelStart& start) {
+  void upload(CudaExec& exec, const TwoLevelStart& start) {
     host_preload_.assign(3 * start.laws.preload.size(), 0.0);
     for (std::size_t c = 0; c < start.laws.preload.size(); ++c) {
       host_preload_[3 * c] = start.laws.preload[c];
     }
     std::tie(touching_.bodies.rotation, contacts_, laws_, touching_.rows.offset, start_impulse_,
              preload_, change_) =
-        staged_.put(grid, start.rotation, start.contacts, start.laws.constants, start.offset,
+        staged_.put(exec, start.rotation, start.contacts, start.laws.constants, start.offset,
                     start.impulse, host_preload_, start.change);
   }
 

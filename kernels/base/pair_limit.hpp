@@ -3,11 +3,17 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
-#include "host/collide/detector.hpp"
-
 namespace tetwarp {
+
+/// More pairs than the limit: the motion is too fast, or too much of the surfaces is near each
+/// other.
+class TooManyPairs : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
 

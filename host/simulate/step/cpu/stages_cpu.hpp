@@ -1,0 +1,51 @@
+/// @file stages_cpu.hpp
+/// Stages of a step that the host computes in vectors; see vector_stages.hpp.
+#pragma once
+#include <cstdint>
+#include <type_traits>
+
+#include "host/exec/exec_cpu.hpp"
+#include "host/simulate/step/cpu/vector_stages.hpp"
+#include "kernels/body/block_assemble.hpp"
+#include "kernels/body/island_cg.hpp"
+#include "kernels/body/tet_force.hpp"
+
+namespace tetwarp {
+
+inline void tet_forces(CpuExec& exec, const char* label, const TetForceBody& body) {
+  exec.for_ranges(label, body.tets.count, [&](std::int64_t begin, std::int64_t end) {
+    vector_stages().tet_forces(body, begin, end);
+  });
+}
+
+inline void block_assemble(CpuExec& exec, const char* label, const BlockAssembleBody& body) {
+  exec.for_ranges(label, body.rows.upper.size, [&](std::int64_t begin, std::int64_t end) {
+    vector_stages().assemble(body, begin, end);
+  });
+}
+
+/// IslandProductBody of a run of rows.
+template <class T>
+struct VectorProductBody {
+  GradientArrays<T> a;
+
+  template <int>
+  PlainSums<1> run(std::int64_t begin, std::int64_t end) const {
+    if constexpr (std::is_same_v<T, double>) {
+      return vector_stages().product(a, begin, end);
+    } else {
+      return vector_stages().product_float(a, begin, end);
+    }
+  }
+};
+
+template <class T>
+void island_product(CpuExec& exec,
+                    const GradientArrays<T>& a,
+                    std::int64_t begin,
+                    std::int64_t end,
+                    PlainSums<1>* curvature) {
+  exec.sum_runs_to(gradient_label(), begin, end, VectorProductBody<T>{a}, curvature);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,17 @@
+/// @file device_sweep.cuh
+/// The stage "sweep" on a whole device.
+#pragma once
+#include <cstdint>
+
+#include "kernels/contact/contact_sweep.hpp"
+#include "kernels/exec/exec_cuda.cuh"
+
+namespace tetwarp {
+
+/// As a recorded graph; CudaExec::forget_parts() drops it.
+template <class Body>
+void contact_sweep(CudaExec& exec, View<const std::int64_t> color_start, const Body& body) {
+  exec.for_each_part(color_start, body);
+}
+
+}  // namespace tetwarp
