@@ -9,7 +9,7 @@ namespace tetwarp {
 ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions&) {
   throw IoError(path, "",
                 "this build cannot read Gmsh's meshes; install libgmsh-dev and build again, or "
-                "have Gmsh write .vtk");
+                "convert to VTKHDF of type UnstructuredGrid");
 }
 
 }  // namespace tetwarp

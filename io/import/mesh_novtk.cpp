@@ -9,7 +9,7 @@ namespace tetwarp {
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions&) {
   throw IoError(path, "",
                 "this build cannot read VTK's meshes; install libvtk9-dev and build again, or "
-                "convert to .vtkhdf or .msh");
+                "convert to VTKHDF of type UnstructuredGrid");
 }
 
 ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options) {
