@@ -2,7 +2,7 @@
 /// In place of mesh_gmsh.cpp where Gmsh was missing when this was built.
 #include <tetwarp/error.hpp>
 
-#include "io/import/mesh_import.hpp"
+#include "io/reader/mesh_readers.hpp"
 
 namespace tetwarp {
 
