@@ -17,6 +17,7 @@
 namespace tetwarp {
 namespace {
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr int loader_exit_code = 127;  // of the system's loader, where a library is missing
 
 /// @param output  becomes the standard output
 /// @param process  out: the child
@@ -47,7 +48,8 @@ int start(std::vector<std::string>& words, int output, pid_t& process) {
 }  // namespace
 
 ChildProcess::ChildProcess(std::vector<std::string> words, double seconds)
-    : seconds_(seconds),
+    : program_(words[0]),
+      seconds_(seconds),
       deadline_(std::chrono::steady_clock::now() +
                 std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds))),
       buffer_(buffer_bytes) {
@@ -60,7 +62,7 @@ ChildProcess::ChildProcess(std::vector<std::string> words, double seconds)
   close(ends[1]);
   if (error == 0) return;
   close(descriptor_);
-  throw std::runtime_error("'" + words[0] + "' cannot be started: " + std::strerror(error));
+  throw std::runtime_error("'" + program_ + "' cannot be started: " + std::strerror(error));
 }
 
 ChildProcess::~ChildProcess() {
@@ -106,6 +108,10 @@ void ChildProcess::fail_at_end() {
   const int status = end();
   if (WIFSIGNALED(status)) {
     throw ChildError(std::string("crashed (") + strsignal(WTERMSIG(status)) + ")");
+  }
+  if (WEXITSTATUS(status) == loader_exit_code) {
+    throw std::runtime_error("'" + program_ +
+                             "' lacks one of its libraries; run it by itself to see which");
   }
   throw ChildError("ended without a result");
 }

@@ -32,7 +32,7 @@ class ChildProcess {
   ~ChildProcess();  ///< kills the child and waits for its end
 
   /// Waits for the next bytes of the result. Throws ChildError when the child ends before it has
-  /// sent them, or exceeds its time.
+  /// sent them, or exceeds its time, and std::runtime_error when it lacks a library.
   void read(void* bytes, std::size_t count);
 
  private:
@@ -40,6 +40,7 @@ class ChildProcess {
   [[noreturn]] void fail_at_end();
   int end();
 
+  std::string program_;
   double seconds_;
   std::chrono::steady_clock::time_point deadline_;
   pid_t process_ = -1;

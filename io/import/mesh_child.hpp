@@ -20,7 +20,7 @@ enum class ChildOutcome : std::uint8_t { mesh, error };
 /// Has the program read a mesh, which is not checked. TETWARP_READER in the environment is its
 /// path; else it is searched beside this library or program and where both are installed.
 /// @throws IoError of the reader; when the program is not found, crashes or exceeds its limits
-/// @throws std::runtime_error when it cannot be started
+/// @throws std::runtime_error when it cannot be started or lacks a library
 ImportedMesh read_mesh_in_child(const std::string& path,
                                 const MeshImportOptions& options,
                                 const ChildLimits& limits);

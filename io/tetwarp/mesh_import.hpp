@@ -69,7 +69,7 @@ TETWARP_IO_EXPORT bool has_surface_extension(const std::string& path);
 /// @throws IoError on other cells of three dimensions, on damaged files, if tetwarp-read is not
 ///         found, and if it was built without the library; the text names kind and number of the
 ///         cells, the places searched, or the package
-/// @throws std::runtime_error when no process can be made
+/// @throws std::runtime_error when tetwarp-read cannot be started or lacks a library
 TETWARP_IO_EXPORT ImportedMesh import_mesh(const std::string& path,
                                            const MeshImportOptions& options = {});
 

@@ -99,6 +99,11 @@ TEST_F(MeshChild, NamesThePlaceOfAReaderThatIsMissing) {
             "it, or set TETWARP_READER to its path");
 }
 
+TEST_F(MeshChild, TellsThatALibraryIsMissing) {
+  EXPECT_EQ(message_of<std::runtime_error>([] { read_mesh_in_child("library", {}, limits); }),
+            "'" TETWARP_FAKE_READER "' lacks one of its libraries; run it by itself to see which");
+}
+
 TEST_F(MeshChild, IsFoundBesideTheProgram) {
   unsetenv("TETWARP_READER");
 
