@@ -3,7 +3,7 @@
 set(tetwarp_bundled tetwarp_tests tetwarp_stress_tests tetwarp_device_tests
   tetwarp_device_simulate_tests)
 if(TETWARP_IO)
-  list(APPEND tetwarp_bundled tetwarp_command)
+  list(APPEND tetwarp_bundled tetwarp_command tetwarp_read)
 endif()
 if(TETWARP_BENCH)
   list(APPEND tetwarp_bundled tetwarp_bench tetwarp_bench_simulate)

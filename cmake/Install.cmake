@@ -11,7 +11,10 @@ endif()
 
 if(BUILD_SHARED_LIBS AND TETWARP_IO)  # an installed tree may be moved
   file(RELATIVE_PATH tetwarp_lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  file(RELATIVE_PATH tetwarp_lib_from_reader
+    ${CMAKE_INSTALL_FULL_LIBEXECDIR}/tetwarp ${CMAKE_INSTALL_FULL_LIBDIR})
   set_target_properties(tetwarp_command PROPERTIES INSTALL_RPATH "$ORIGIN/${tetwarp_lib_from_bin}")
+  set_target_properties(tetwarp_read PROPERTIES INSTALL_RPATH "$ORIGIN/${tetwarp_lib_from_reader}")
   set_target_properties(tetwarp_io PROPERTIES INSTALL_RPATH "$ORIGIN")
 endif()
 

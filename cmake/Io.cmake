@@ -19,8 +19,7 @@ tetwarp_sources(tetwarp_io io/files
 tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_read.cpp h5_rows.cpp h5_write.cpp value_names.cpp)
 tetwarp_sources(tetwarp_io io/import
-  child_process.cpp merge_cells.cpp mesh_${tetwarp_gmsh}.cpp mesh_${tetwarp_vtk}.cpp mesh_child.cpp
-  mesh_import.cpp surface_seams.cpp)
+  child_process.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp)
 tetwarp_sources(tetwarp_io io/nifti
   nifti_components.cpp nifti_extension.cpp nifti_facts.cpp nifti_fields.cpp nifti_grid.cpp
   nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)
@@ -35,10 +34,6 @@ tetwarp_sources(tetwarp_io io/vtkhdf
   simulation_mesh.cpp simulation_points.cpp simulation_series.cpp surface_file.cpp vtkhdf_array.cpp
   vtkhdf_cells.cpp vtkhdf_image.cpp vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp
   vtkhdf_volume.cpp vtkhdf_write.cpp vtkhdf_write_mesh.cpp)
-if(TETWARP_HAS_VTK)
-  tetwarp_sources(tetwarp_io io/import
-    mesh_vtk_arrays.cpp surface_vtk.cpp)
-endif()
 add_library(tetwarp::io ALIAS tetwarp_io)
 set_target_properties(tetwarp_io PROPERTIES EXPORT_NAME io VERSION ${PROJECT_VERSION} SOVERSION 0
   UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
@@ -47,7 +42,40 @@ target_include_directories(tetwarp_io
   PRIVATE ${PROJECT_SOURCE_DIR})
 tetwarp_export_macro(tetwarp_io io_export.hpp)
 target_link_libraries(tetwarp_io PUBLIC tetwarp
-  PRIVATE tetwarp_hdf5 tetwarp_mesh_import tetwarp_nifti tetwarp_png tetwarp_gif
+  PRIVATE tetwarp_hdf5 tetwarp_nifti tetwarp_png tetwarp_gif ${CMAKE_DL_LIBS}
     $<BUILD_INTERFACE:tetwarp_options> $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
-list(APPEND tetwarp_exported tetwarp_io tetwarp_hdf5 tetwarp_mesh_import tetwarp_nifti tetwarp_png
-  tetwarp_gif)
+list(APPEND tetwarp_exported tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png tetwarp_gif)
+
+# The program tetwarp-read, which tetwarp::io starts to read meshes by VTK and Gmsh: they crash on
+# some damaged files. It is compiled with what it needs of tetwarp::io, since a shared library hides
+# its private code.
+add_library(tetwarp_reader STATIC)
+tetwarp_sources(tetwarp_reader io/files
+  extension.cpp memory.cpp)
+tetwarp_sources(tetwarp_reader io/volume
+  mesh_arrays.cpp)
+tetwarp_sources(tetwarp_reader io/reader
+  mesh_${tetwarp_gmsh}.cpp mesh_readers.cpp mesh_sender.cpp mesh_${tetwarp_vtk}.cpp)
+if(TETWARP_HAS_VTK)
+  tetwarp_sources(tetwarp_reader io/reader
+    mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp)
+endif()
+set_target_properties(tetwarp_reader PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
+target_include_directories(tetwarp_reader PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/io)
+target_link_libraries(tetwarp_reader PUBLIC tetwarp PRIVATE tetwarp_mesh_import tetwarp_options)
+add_executable(tetwarp_read io/reader/main.cpp)
+set_target_properties(tetwarp_read PROPERTIES OUTPUT_NAME tetwarp-read)
+target_link_libraries(tetwarp_read PRIVATE tetwarp_reader tetwarp_options)
+
+# Where tetwarp::io searches it once it is installed: from its own folder, which is that of a program
+# with the static library, and where this build is configured to be installed.
+set(tetwarp_reader_folder ${CMAKE_INSTALL_LIBEXECDIR}/tetwarp)
+if(BUILD_SHARED_LIBS)
+  file(RELATIVE_PATH tetwarp_reader_path /${CMAKE_INSTALL_LIBDIR} /${tetwarp_reader_folder})
+else()
+  file(RELATIVE_PATH tetwarp_reader_path /${CMAKE_INSTALL_BINDIR} /${tetwarp_reader_folder})
+endif()
+set_property(SOURCE io/import/mesh_child.cpp PROPERTY COMPILE_DEFINITIONS
+  TETWARP_READER_FROM_HERE="${tetwarp_reader_path}/tetwarp-read"
+  TETWARP_READER_INSTALLED="${CMAKE_INSTALL_FULL_LIBEXECDIR}/tetwarp/tetwarp-read")
+install(TARGETS tetwarp_read DESTINATION ${tetwarp_reader_folder})

@@ -1,5 +1,6 @@
-# Libraries that read meshes of other programs: VTK (.vtu, .vtk, surfaces) and Gmsh (.msh). Both are optional;
-# without one, importing its format fails with an error that names the package. A bundle contains neither.
+# Libraries that read meshes of other programs: VTK (.vtu, .vtk, surfaces) and Gmsh (.msh), in the program
+# tetwarp-read alone. Both are optional; without one, importing its format fails with an error that names the
+# package. A bundle contains neither.
 foreach(name VTK Gmsh)
   string(TOUPPER ${name} upper)
   set(TETWARP_${upper} AUTO CACHE STRING "Import of meshes through ${name}: AUTO, ON or OFF")
@@ -25,7 +26,7 @@ if(TETWARP_HAS_VTK)
     get_target_property(location VTK::${module} LOCATION)
     get_target_property(folders VTK::${module} INTERFACE_INCLUDE_DIRECTORIES)
     list(APPEND tetwarp_vtk_libraries ${location})
-    target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE "$<BUILD_INTERFACE:${folders}>")
+    target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE ${folders})
   endforeach()
   target_link_libraries(tetwarp_mesh_import INTERFACE ${tetwarp_vtk_libraries})
 endif()
@@ -40,14 +41,13 @@ if(NOT TETWARP_GMSH STREQUAL "OFF")
     message(FATAL_ERROR "TETWARP_GMSH=ON, but Gmsh's C library was not found; install libgmsh-dev")
   endif()
 endif()
-if(TETWARP_HAS_GMSH)  # loaded at run time, see io/import/gmsh_library.hpp
+if(TETWARP_HAS_GMSH)  # loaded at run time, see io/reader/gmsh_library.hpp
   file(REAL_PATH ${TETWARP_GMSH_LIBRARY} library)
   get_filename_component(library ${library} NAME)
   string(REGEX REPLACE "(\\.so\\.[0-9]+\\.[0-9]+).*" "\\1" library ${library})
-  set_source_files_properties(io/import/mesh_gmsh.cpp PROPERTIES
+  set_source_files_properties(io/reader/mesh_gmsh.cpp PROPERTIES
     COMPILE_DEFINITIONS TETWARP_GMSH_SONAME="${library}")
-  target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE
-    $<BUILD_INTERFACE:${TETWARP_GMSH_INCLUDE}>)
+  target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE ${TETWARP_GMSH_INCLUDE})
   target_link_libraries(tetwarp_mesh_import INTERFACE ${CMAKE_DL_LIBS})
 endif()
 message(STATUS "tetwarp: meshes of other programs: VTK: ${TETWARP_HAS_VTK}, Gmsh: ${TETWARP_HAS_GMSH}")

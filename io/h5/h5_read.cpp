@@ -122,10 +122,17 @@ bool is_boolean(const Handle& type) {
       H5Tget_nmembers(type.id()) != 2) {
     return false;
   }
-  const Handle whole(H5Tget_super(type.id()), H5Tclose);
   std::uint8_t off = 1, on = 0;
-  return whole && is_sound(whole) && H5Tenum_valueof(type.id(), "FALSE", &off) >= 0 &&
+  return H5Tenum_valueof(type.id(), "FALSE", &off) >= 0 &&
          H5Tenum_valueof(type.id(), "TRUE", &on) >= 0 && off == 0 && on == 1;
+}
+
+/// The type of the elements of a dataset, of an enumeration that of its numbers.
+Handle number_type(const Dataset& dataset, const Handle& type) {
+  const bool is_enum = H5Tget_class(type.id()) == H5T_ENUM;
+  Handle numbers(is_enum ? H5Tget_super(type.id()) : H5Tcopy(type.id()), H5Tclose);
+  if (!numbers || !is_sound(numbers)) dataset.fail("damaged type of its elements");
+  return numbers;
 }
 }  // namespace
 
@@ -222,10 +229,11 @@ Dataset open_dataset(const Object& parent, const std::string& name) {
                    ", expected at most 2^60: damaged");
     dataset.dims.push_back(static_cast<std::int64_t>(dim));
   }
-  if (!is_sound(type)) dataset.fail("damaged type of its elements");
-  dataset.type_class = is_boolean(type) ? H5T_INTEGER : H5Tget_class(type.id());
-  dataset.type_size = H5Tget_size(type.id());
-  dataset.is_signed = H5Tget_class(type.id()) == H5T_INTEGER && H5Tget_sign(type.id()) == H5T_SGN_2;
+  const Handle numbers = number_type(dataset, type);
+  dataset.type_class = H5Tget_class(numbers.id());
+  dataset.type_size = H5Tget_size(numbers.id());
+  dataset.is_signed = dataset.type_class == H5T_INTEGER && H5Tget_sign(numbers.id()) == H5T_SGN_2 &&
+                      !is_boolean(type);
   check_storage(dataset);
   return dataset;
 }

@@ -41,8 +41,8 @@ Object open_group(const Object& parent, const std::string& name);
 Dataset open_dataset(const Object& parent, const std::string& name);
 
 /// The pixel type nearest to the elements of a dataset: integers of 1, 2, 4, 8 bytes and floats up
-/// to 8, in any byte order, and booleans as h5py stores them, which are uint8. Throws IoError for
-/// strings, compounds and the like.
+/// to 8, in any byte order, enumerations as their integers, and booleans as h5py stores them, which
+/// are uint8. Throws IoError for strings, compounds and the like.
 PixelType pixel_type_of(const Dataset& dataset);
 
 /// True when pixel_type_of() does not throw.

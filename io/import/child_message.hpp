@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,23 +17,23 @@
 
 namespace tetwarp {
 
-/// Sends values, each as MessageReader reads it.
+/// Sends values, each as MessageReader reads it. Errors stay in the stream, see std::ferror().
 class MessageWriter {
  public:
-  explicit MessageWriter(ChildOutput& output) : output_(output) {}
+  explicit MessageWriter(std::FILE* output) : output_(output) {}
 
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  void operator()(const T& value) { output_.write(&value, sizeof value); }
+  void operator()(const T& value) { write(&value, sizeof value); }
   void operator()(const std::string& text) {
     (*this)(std::uint64_t{text.size()});
-    output_.write(text.data(), text.size());
+    write(text.data(), text.size());
   }
   template <class T>
   void operator()(const std::vector<T>& values) {
     (*this)(std::uint64_t{values.size()});
     if constexpr (std::is_trivially_copyable_v<T>) {
-      output_.write(values.data(), values.size() * sizeof(T));
+      write(values.data(), values.size() * sizeof(T));
     } else {
       for (const T& value : values) (*this)(value);
     }
@@ -56,7 +57,9 @@ class MessageWriter {
   void operator()(const T& value) { exchange_members(*this, value); }
 
  private:
-  ChildOutput& output_;
+  void write(const void* bytes, std::size_t count) { std::fwrite(bytes, 1, count, output_); }
+
+  std::FILE* output_;
 };
 
 /// Reads values from a source of bytes, such as a ChildProcess, with read(void*, std::size_t).

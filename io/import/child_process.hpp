@@ -1,14 +1,14 @@
 /// @file child_process.hpp
-/// A function that runs in a child process, so that a crash, an endless loop or unbounded memory in
-/// a foreign library ends the child and not the program.
+/// A program that runs as a child process, so that a crash, an endless loop or unbounded memory in
+/// a foreign library ends the child and not this program.
 #pragma once
 #include <sys/types.h>
 
 #include <chrono>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace tetwarp {
@@ -19,41 +19,20 @@ class ChildError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-struct ChildLimits {
-  double seconds;  ///< from the start to the last byte of the result
-  double memory;   ///< [byte] that the child may allocate
-};
-
-/// The end of a pipe to which a child writes its result.
-class ChildOutput {
- public:
-  explicit ChildOutput(int descriptor) : descriptor_(descriptor) {}
-
-  /// Throws ChildError when nobody reads.
-  void write(const void* bytes, std::size_t count);
-  void flush();
-
- private:
-  int descriptor_;
-  std::vector<std::byte> buffer_;
-};
-
-/// A child process and the bytes that it sends.
-///
-/// The child is made by fork() without exec(): it has one thread, the caller's. Its standard input
-/// and outputs are /dev/null, its signal handlers are the default ones, it leaves no core file, it
-/// runs no exit handlers and it is killed with the thread that made it.
+/// A child process and the bytes that it writes to its standard output. Its standard input and
+/// error are /dev/null, and its signals have their default actions.
 class ChildProcess {
  public:
-  /// @param run  runs in the child; its exceptions end the child
-  /// @throws std::runtime_error when no process can be made
-  ChildProcess(const ChildLimits& limits, const std::function<void(ChildOutput&)>& run);
+  /// @param words    path of the program, and its arguments
+  /// @param seconds  from the start to the last byte of the result
+  /// @throws std::runtime_error when the program cannot be started
+  ChildProcess(std::vector<std::string> words, double seconds);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();  ///< kills the child and waits for its end
 
   /// Waits for the next bytes of the result. Throws ChildError when the child ends before it has
-  /// sent them, or exceeds its time.
+  /// sent them, or exceeds its time, and std::runtime_error when it lacks a library.
   void read(void* bytes, std::size_t count);
 
  private:
@@ -61,7 +40,8 @@ class ChildProcess {
   [[noreturn]] void fail_at_end();
   int end();
 
-  ChildLimits limits_;
+  std::string program_;
+  double seconds_;
   std::chrono::steady_clock::time_point deadline_;
   pid_t process_ = -1;
   int descriptor_ = -1;

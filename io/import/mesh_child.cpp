@@ -1,62 +1,65 @@
 /// @file mesh_child.cpp
-/// Sends the mesh or the error of a reader through a pipe.
+/// Finds and starts tetwarp-read, and reads its message.
 #include "io/import/mesh_child.hpp"
 
-#include <cstdint>
-#include <exception>
-#include <new>
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
 #include <tetwarp/error.hpp>
+#include <vector>
 
 #include "io/files/memory.hpp"
 #include "io/import/child_message.hpp"
+#include "io/import/child_process.hpp"
 
 namespace tetwarp {
 namespace {
-/// First byte of a message.
-enum class Outcome : std::uint8_t { mesh, error };
+namespace fs = std::filesystem;
 
-void send_error(MessageWriter& message, const std::string& dataset, const std::string& problem) {
-  message(Outcome::error);
-  message(dataset);
-  message(problem);
+/// Folder of the file that holds this code: the shared library, or a program with the static one.
+fs::path own_folder() {
+  static const char anchor = 0;
+  Dl_info here{};
+  fs::path file = dladdr(&anchor, &here) != 0 ? here.dli_fname : "";
+  if (!file.is_absolute()) file = "/proc/self/exe";  // of a program it may be the name it was given
+  std::error_code error;
+  return fs::canonical(file, error).parent_path();
 }
 
-/// The text of an error without the names of file and dataset, which its constructor adds.
-std::string problem_of(const IoError& error) {
-  const std::string names = IoError(error.file(), error.dataset(), "").what();
-  return std::string(error.what()).substr(names.size());
+std::vector<fs::path> reader_places() {
+  if (const char* const chosen = std::getenv("TETWARP_READER")) return {chosen};
+  const fs::path folder = own_folder();
+  return {folder / "tetwarp-read", (folder / TETWARP_READER_FROM_HERE).lexically_normal(),
+          TETWARP_READER_INSTALLED};
 }
 
-/// Runs in the child.
-void send_mesh(ChildOutput& output, double memory, const std::function<ImportedMesh()>& read) {
-  MessageWriter message(output);
-  try {
-    ImportedMesh mesh = read();
-    message(Outcome::mesh);
-    exchange_members(message, mesh);
-  } catch (const IoError& error) {
-    send_error(message, error.dataset(), problem_of(error));
-  } catch (const std::bad_alloc&) {
-    send_error(message, "",
-               "cannot be read in " + bytes_text(memory) +
-                   " of memory: damaged, or too large for this machine");
-  } catch (const std::exception& error) {
-    send_error(message, "", std::string("cannot be read: ") + error.what());
+std::string find_reader(const std::string& path) {
+  std::string searched;
+  for (const fs::path& place : reader_places()) {
+    if (access(place.c_str(), X_OK) == 0) return place;
+    searched += (searched.empty() ? "" : ", ") + place.string();
   }
+  throw IoError(path, "",
+                "needs the program tetwarp-read, which is not at " + searched +
+                    "; install it, or set TETWARP_READER to its path");
 }
 }  // namespace
 
 ImportedMesh read_mesh_in_child(const std::string& path,
-                                const ChildLimits& limits,
-                                const std::function<ImportedMesh()>& read) {
+                                const MeshImportOptions& options,
+                                const ChildLimits& limits) {
+  std::vector<std::string> words = {find_reader(path), path, std::to_string(limits.memory),
+                                    options.needs_solids ? "solids" : "triangles"};
+  if (options.displacement) words.push_back(*options.displacement);
   std::string dataset, problem;
   try {
-    ChildProcess child(limits,
-                       [&](ChildOutput& output) { send_mesh(output, limits.memory, read); });
+    ChildProcess child(std::move(words), limits.seconds);
     MessageReader message(child, available_memory());
-    Outcome outcome{};
+    ChildOutcome outcome{};
     message(outcome);
-    if (outcome == Outcome::mesh) {
+    if (outcome == ChildOutcome::mesh) {
       ImportedMesh mesh;
       exchange_members(message, mesh);
       return mesh;

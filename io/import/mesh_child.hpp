@@ -1,20 +1,29 @@
 /// @file mesh_child.hpp
-/// Meshes that are read in a child process.
+/// Meshes that the program tetwarp-read reads, and the members of a mesh in its message.
 #pragma once
-#include <functional>
+#include <cstdint>
 #include <string>
 #include <type_traits>
 
-#include "io/import/child_process.hpp"
-#include "io/import/mesh_import.hpp"
+#include <tetwarp/mesh_import.hpp>
 
 namespace tetwarp {
 
-/// Runs `read` in a child process and returns its mesh, which is not checked.
-/// @throws IoError of `read`; or about `path` when the child crashes or exceeds its limits
+struct ChildLimits {
+  double seconds;  ///< from the start to the last byte of the result
+  double memory;   ///< [byte] that the program may allocate
+};
+
+/// First value of a message: a mesh follows, or name of a dataset and text of an error.
+enum class ChildOutcome : std::uint8_t { mesh, error };
+
+/// Has the program read a mesh, which is not checked. TETWARP_READER in the environment is its
+/// path; else it is searched beside this library or program and where both are installed.
+/// @throws IoError of the reader; when the program is not found, crashes or exceeds its limits
+/// @throws std::runtime_error when it cannot be started or lacks a library
 ImportedMesh read_mesh_in_child(const std::string& path,
-                                const ChildLimits& limits,
-                                const std::function<ImportedMesh()>& read);
+                                const MeshImportOptions& options,
+                                const ChildLimits& limits);
 
 /// Sends or reads all members of an array.
 /// @param message  a MessageWriter or a MessageReader

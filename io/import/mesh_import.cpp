@@ -1,14 +1,16 @@
 /// @file mesh_import.cpp
-/// Choice of reader, cells and array for meshes of other programs.
-#include "io/import/mesh_import.hpp"
+/// Has a mesh of another program read, checks it, merges its cells and turns its axes.
+#include <tetwarp/mesh_import.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <tetwarp/error.hpp>
 #include <tetwarp/volume.hpp>
@@ -16,14 +18,39 @@
 #include "host/base/point3.hpp"
 #include "io/files/extension.hpp"
 #include "io/files/memory.hpp"
+#include "io/h5/value_names.hpp"
 #include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"
+#include "io/nifti/nifti_components.hpp"
+#include "io/volume/mesh_arrays.hpp"
 
 namespace tetwarp {
 namespace {
 /// Between RAS and LPS.
 void turn(std::vector<Point3>& vectors) {
   for (Point3& vector : vectors) vector = {0 - vector[0], 0 - vector[1], vector[2]};
+}
+
+/// Turns vectors and tensors of floats.
+void turn(MeshArray& array) {
+  if (is_integer(array.type)) return;
+  const std::array<bool, 9> turned = turned_components(array.components);
+  const std::size_t size = size_of(array.type);
+  const auto components = static_cast<std::size_t>(array.components);
+  for (std::size_t s = 0; s < array.data.size() / size; ++s) {
+    if (turned[s % components]) {
+      negate_samples(array.type, std::span(array.data).subspan(s * size, size));
+    }
+  }
+}
+
+/// Leaves out names of groups that a VTKHDF file cannot hold.
+void drop_long_names(ImportedMesh& mesh) {
+  for (MeshArray& array : mesh.arrays) {
+    if (text_of_names(array.value_names).size() <= max_value_names) continue;
+    mesh.left_out.push_back("names of " + std::to_string(array.value_names.size()) + " groups");
+    array.value_names.clear();
+  }
 }
 
 /// Far above the time and memory that any sound file needs, also on a busy machine.
@@ -117,46 +144,16 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   if (!std::ifstream(path)) {
     throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
   }
-  ImportedMesh mesh = read_mesh_in_child(path, limits_for(path, options),
-                                         [&] { return read_mesh_here(path, options); });
+  ImportedMesh mesh = read_mesh_in_child(path, options, limits_for(path, options));
   check_imported(path, mesh, options.needs_solids);
   merge_cells(mesh);
+  drop_long_names(mesh);
   if (options.axes == Axes::lps) {
     turn(mesh.mesh.rest_positions);
     for (std::vector<Point3>& displacement : mesh.displacements) turn(displacement);
-    for (MeshArray& array : mesh.arrays) turn_array(array);
+    for (MeshArray& array : mesh.arrays) turn(array);
   }
   return mesh;
-}
-
-ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& options) {
-  if (has_extension(path, ".msh")) return read_gmsh_mesh(path, options);
-  return options.needs_solids ? read_vtk_mesh(path, options) : read_vtk_surface(path, options);
-}
-
-void leave_out_cell(const std::string& path,
-                    const CellKind& kind,
-                    std::int64_t number,
-                    ImportedMesh& into) {
-  if (kind.dimension == 3) {
-    throw IoError(path, "",
-                  "cell " + std::to_string(number) + " is a " + kind.name +
-                      ", expected tetrahedra of four nodes and hexahedra of eight; split the "
-                      "cells");
-  }
-  ++into.skipped[kind.name];
-}
-
-std::optional<std::string> choose_displacement(const std::string& path,
-                                               const std::vector<std::string>& names,
-                                               const MeshImportOptions& options) {
-  const std::string name = options.displacement.value_or("displacement");
-  if (std::ranges::find(names, name) != names.end()) return name;
-  if (!options.displacement) return std::nullopt;
-  std::string listed;
-  for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
-  throw IoError(path, name,
-                "no such point array; the file has " + (listed.empty() ? "none" : listed));
 }
 
 }  // namespace tetwarp

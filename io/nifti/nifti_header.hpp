@@ -3,6 +3,8 @@
 #pragma once
 #include <znzlib.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,13 +38,20 @@ class NiftiStream {
     return count <= bytes ? count : 0;  // an error is a number below zero
   }
 
-  /// False when what follows is damaged: at the end of a gzip file its checksum is compared.
-  bool is_sound_behind() {
-    char next = 0;
-    return znzread(&next, 1, 1, file_) <= 1;
+  /// Reads the last bytes that are wanted and what is behind them, where length and checksum of a
+  /// gzip file are compared, and closes the file.
+  /// @param out  has room for one byte more: zlib goes on to a missing end only if it has room
+  /// @returns false as read(), and when the rest is damaged or truncated
+  bool read_last(void* out, std::size_t bytes) {
+    const std::size_t got = znzread(out, 1, bytes + 1, file_);
+    std::array<char, 4096> behind;
+    std::size_t count = behind.size();
+    while (count == behind.size()) count = znzread(behind.data(), 1, behind.size(), file_);
+    return close() && (got == bytes || got == bytes + 1) && count < behind.size();
   }
 
-  /// @returns false when the rest of the buffers could not be written
+  /// @returns false when the rest of the buffers could not be written, or when the file that was
+  ///          read ends within what gzip has packed
   bool close() { return file_ == nullptr || znzclose(file_) == 0; }
 
  private:

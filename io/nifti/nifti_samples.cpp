@@ -58,9 +58,8 @@ KeptStream& kept() {
 std::unique_ptr<NiftiStream> take_stream(const std::string& path) {
   KeptStream& last = kept();
   const std::lock_guard guard(last.lock);
-  const FileIdentity identity = identity_of(path);
-  if (last.stream && last.identity == identity) return std::move(last.stream);
-  last.identity = identity;
+  if (last.stream && last.identity == identity_of(path)) return std::move(last.stream);
+  last.stream.reset();
   return std::make_unique<NiftiStream>(path, "rb", true);
 }
 
@@ -112,7 +111,8 @@ bool scale(const NiftiHeader& header,
 class NiftiSamples::Source {
  public:
   explicit Source(int descriptor) : descriptor_(descriptor) {}
-  Source(const std::string& path, bool is_gzip) : path_(path) {
+  /// @param end  offset behind the last sample of all steps
+  Source(const std::string& path, bool is_gzip, std::int64_t end) : path_(path), end_(end) {
     if (is_gzip) {
       stream_ = take_stream(path);
     } else {
@@ -126,16 +126,18 @@ class NiftiSamples::Source {
     if (stream_ && *stream_) keep_stream(path_, std::move(stream_));
   }
 
+  /// @param out  has room for one byte more
+  /// @returns false when the bytes are not there, or a gzip file is damaged behind the last sample
   bool read(std::int64_t offset, void* out, std::size_t bytes) {
     if (!stream_) return descriptor_ >= 0 && read_at(descriptor_, out, bytes, offset);
-    return *stream_ && stream_->seek(offset) && stream_->read(out, bytes);
+    if (!*stream_ || !stream_->seek(offset)) return false;
+    const bool is_last = offset + static_cast<std::int64_t>(bytes) == end_;
+    return is_last ? stream_->read_last(out, bytes) : stream_->read(out, bytes);
   }
-
-  /// False when a gzip file is damaged behind what was read.
-  bool is_sound_behind() { return !stream_ || stream_->is_sound_behind(); }
 
  private:
   std::string path_;
+  std::int64_t end_ = 0;
   int descriptor_ = -1;
   int owned_ = -1;
   std::unique_ptr<NiftiStream> stream_;
@@ -161,6 +163,10 @@ std::int64_t NiftiSamples::plane_bytes() const {
   return header_.grid.voxel_count() * static_cast<std::int64_t>(size_of(header_.type));
 }
 
+std::int64_t NiftiSamples::end_offset() const {
+  return header_.data_offset + header_.components * header_.steps * plane_bytes();
+}
+
 /// The file stores all steps of one component, then those of the next one.
 std::int64_t NiftiSamples::plane_offset(std::size_t component) const {
   const std::int64_t plane = static_cast<std::int64_t>(component) * header_.steps + step_;
@@ -177,7 +183,8 @@ double NiftiSamples::unpacked_bytes() const {
 }
 
 void NiftiSamples::fail() const {
-  throw IoError(path_, "", "ends before its last sample: truncated or damaged, copy it again");
+  throw IoError(path_, "",
+                "ends early or has a wrong checksum: truncated or damaged, copy it again");
 }
 
 void NiftiSamples::read(const Region& region, void* out) {
@@ -187,23 +194,22 @@ void NiftiSamples::read(const Region& region, void* out) {
   if (unpacked_) {
     source.emplace(unpacked_->descriptor());
   } else {
-    source.emplace(header_.samples, header_.is_gzip);
+    source.emplace(header_.samples, header_.is_gzip, end_offset());
   }
   for (std::size_t c = 0; c < static_cast<std::size_t>(header_.components); ++c) {
     read_component(*source, region, c, static_cast<std::byte*>(out));
   }
-  if (step_ + 1 == header_.steps && !source->is_sound_behind()) fail();
 }
 
 void NiftiSamples::unpack() {
   const std::string folder = scratch_.empty() ? std::filesystem::temp_directory_path() / "unpacked"
                                               : std::filesystem::path(scratch_);
   auto unpacked = std::make_unique<ScratchFile>(folder);
-  Source source(header_.samples, true);
-  std::vector<std::byte> part(nifti_part_bytes);
+  Source source(header_.samples, true, end_offset());
+  std::vector<std::byte> part(nifti_part_bytes + 1);
   for (std::size_t c = 0; c < static_cast<std::size_t>(header_.components); ++c) {
     for (std::int64_t done = 0; done < plane_bytes();) {
-      const auto bytes = std::min(std::ssize(part), plane_bytes() - done);
+      const auto bytes = std::min(std::ssize(part) - 1, plane_bytes() - done);
       const auto count = static_cast<std::size_t>(bytes);
       if (!source.read(plane_offset(c) + done, part.data(), count)) fail();
       const std::int64_t to = static_cast<std::int64_t>(c) * plane_bytes() + done;
@@ -215,7 +221,6 @@ void NiftiSamples::unpack() {
       done += bytes;
     }
   }
-  if (step_ + 1 == header_.steps && !source.is_sound_behind()) fail();
   unpacked_ = std::move(unpacked);
 }
 
@@ -231,10 +236,9 @@ void NiftiSamples::read_component(Source& source,
   std::vector<std::byte> part;
   const auto read_run = [&](std::int64_t in_grid, std::int64_t in_region, std::int64_t count) {
     const auto samples = static_cast<std::size_t>(count);
-    part.resize(samples * size);
-    if (!source.read(start + in_grid * static_cast<std::int64_t>(size), part.data(), part.size())) {
-      return false;
-    }
+    part.resize(samples * size + 1);
+    const std::int64_t offset = start + in_grid * static_cast<std::int64_t>(size);
+    if (!source.read(offset, part.data(), samples * size)) return false;
     convert(part.data(), samples, c, out + static_cast<std::size_t>(in_region) * voxel);
     return true;
   };

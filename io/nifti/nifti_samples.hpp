@@ -40,6 +40,7 @@ class NiftiSamples {
 
   std::int64_t plane_bytes() const;
   std::int64_t plane_offset(std::size_t component) const;
+  std::int64_t end_offset() const;
   void unpack();
   void read_component(Source& source, const Region& region, std::size_t c, std::byte* out) const;
   void convert(std::byte* part, std::size_t count, std::size_t c, std::byte* out) const;

@@ -56,18 +56,20 @@ TETWARP_IO_EXPORT bool has_surface_extension(const std::string& path);
 /// Reads a mesh of tetrahedra and hexahedra with all steps of its displacement. The format is
 /// chosen by the end of the name.
 ///
-/// VTK and Gmsh crash on some damaged files. They read in a child process, made by fork(), which
-/// sends the mesh back: a crash, an endless loop or an explosion of memory ends the child and
-/// becomes an IoError. Memory of the child is limited to 4 GiB and 1000 bytes per byte of the file,
-/// and to what the machine has left. Indices, counts and numbers are checked again in the caller.
+/// VTK and Gmsh crash on some damaged files. They are in a program of their own, tetwarp-read,
+/// which sends the mesh back: a crash, an endless loop or an explosion of memory ends that program
+/// and becomes an IoError. Its memory is limited to 4 GiB and 1000 bytes per byte of the file, and
+/// to what the machine has left. Indices, counts and numbers are checked again in the caller.
 ///
-/// The caller may have other threads, also of OpenMP: the child has none of them. But no other
-/// thread may be inside VTK or Gmsh during the call. While the child lives, it shares the caller's
-/// memory by copy on write. Where the program ignores SIGCHLD, an error does not name the signal of
-/// a crash.
-/// @throws IoError on other cells of three dimensions, on damaged files, and if this build lacks
-///         the library; the text names kind and number of the cells, or the package
-/// @throws std::runtime_error when no process can be made
+/// The environment variable TETWARP_READER is the path of that program. Without it, it is searched
+/// beside the library (the static one: beside the program), in libexec/tetwarp of the folder where
+/// both are installed, and where the library was configured to be installed. It ends with the
+/// thread that calls. Where the caller ignores SIGCHLD, an error does not name the signal of a
+/// crash.
+/// @throws IoError on other cells of three dimensions, on damaged files, if tetwarp-read is not
+///         found, and if it was built without the library; the text names kind and number of the
+///         cells, the places searched, or the package
+/// @throws std::runtime_error when tetwarp-read cannot be started or lacks a library
 TETWARP_IO_EXPORT ImportedMesh import_mesh(const std::string& path,
                                            const MeshImportOptions& options = {});
 

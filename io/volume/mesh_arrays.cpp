@@ -1,13 +1,11 @@
 /// @file mesh_arrays.cpp
-/// Numbers of cells as arrays, names that are free, and components in other axes.
+/// Numbers of cells as arrays, names that are free, and nodes that cells have.
 #include "io/volume/mesh_arrays.hpp"
 
-#include <algorithm>
 #include <span>
 #include <utility>
 
 #include "host/base/point3.hpp"
-#include "io/nifti/nifti_components.hpp"
 
 namespace tetwarp {
 
@@ -52,18 +50,6 @@ std::vector<bool> nodes_of_cells(const Mesh& mesh,
 void clear_unused(const std::vector<bool>& used, std::vector<Point3>& displacement) {
   for (std::size_t node = 0; node < displacement.size(); ++node) {
     if (!used[node] && !is_finite(displacement[node])) displacement[node] = {0, 0, 0};
-  }
-}
-
-void turn_array(MeshArray& array) {
-  if (is_integer(array.type)) return;
-  const std::array<bool, 9> turned = turned_components(array.components);
-  const std::size_t size = size_of(array.type);
-  const auto components = static_cast<std::size_t>(array.components);
-  for (std::size_t s = 0; s < array.data.size() / size; ++s) {
-    if (turned[s % components]) {
-      negate_samples(array.type, std::span(array.data).subspan(s * size, size));
-    }
   }
 }
 

@@ -40,7 +40,4 @@ std::vector<bool> nodes_of_cells(const Mesh& mesh,
 /// Makes displacements that are not finite 0 at nodes of no cell, where they move nothing.
 void clear_unused(const std::vector<bool>& used, std::vector<Point3>& displacement);
 
-/// Turns vectors and tensors of floats between RAS and LPS.
-void turn_array(MeshArray& array);
-
 }  // namespace tetwarp

@@ -126,7 +126,18 @@ MeshFile::MeshFile(const std::string& path) : file_(open_vtkhdf(path, "Unstructu
   const h5::Object point_data = h5::open_group(root, "PointData");
   if (h5::has_child(point_data, "displacement")) {
     displacement_ = open_vectors(point_data, "displacement");
+    check_displacement_offsets();
   }
+}
+
+/// Without offsets the rows of an array are those of the points, as VTK reads them.
+void MeshFile::check_displacement_offsets() const {
+  if (!file_.is_temporal() || !displacement_offsets_.empty()) return;
+  if (displacement_.rows() <= points_.rows()) return;
+  displacement_.fail("has " + std::to_string(displacement_.rows()) + " rows for " +
+                     std::to_string(points_.rows()) +
+                     " points, and no dataset Steps/PointDataOffsets/displacement tells which of "
+                     "them a step has; add it");
 }
 
 std::vector<std::string> MeshFile::not_read() const {
@@ -210,7 +221,6 @@ std::vector<Point3> MeshFile::read_points(std::int64_t step) const {
 }
 
 std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
-  // An array without offsets has those of the points.
   const std::int64_t shift =
       displacement_offsets_.empty()
           ? 0

@@ -79,6 +79,7 @@ class MeshFile {
   MeshCells read_cells(std::int64_t step, CellChoice choice = CellChoice::solids) const;
 
  private:
+  void check_displacement_offsets() const;
   /// Steps/<name> of a step; 0 in static files and where the file has no such dataset.
   std::int64_t offset_of(const std::vector<std::int64_t>& offsets, std::int64_t step) const;
   std::vector<Point3> read_rows(const h5::Dataset& dataset,

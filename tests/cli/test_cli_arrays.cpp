@@ -72,7 +72,6 @@ TEST(CliArrays, WarpKeepsTheirOrderAndTheActiveOne) {
 /// numbers, cell data and field data.
 void add_foreign_arrays(const std::string& path) {
   const std::vector<hsize_t> dims{8, 10, 12};
-  const std::vector<std::uint8_t> bits(960, 1);
   const hid_t boolean = H5Tenum_create(H5T_STD_I8LE);
   const std::int8_t off = 0, on = 1;
   H5Tenum_insert(boolean, "FALSE", &off);
@@ -90,16 +89,9 @@ void add_foreign_arrays(const std::string& path) {
       .group("VTKHDF/CellData")
       .dataset("VTKHDF/CellData/part", {7, 9, 11}, std::vector<std::uint8_t>(693, 1))
       .group("VTKHDF/FieldData")
-      .dataset("VTKHDF/FieldData/dose", {1}, std::vector<double>{60});
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t space = H5Screate_simple(3, dims.data(), nullptr);
-  const hid_t data = H5Dcreate2(file, "VTKHDF/PointData/bits", boolean, space, H5P_DEFAULT,
-                                H5P_DEFAULT, H5P_DEFAULT);
-  H5Dwrite(data, boolean, H5S_ALL, H5S_ALL, H5P_DEFAULT, bits.data());
+      .dataset("VTKHDF/FieldData/dose", {1}, std::vector<double>{60})
+      .dataset("VTKHDF/PointData/bits", dims, std::vector<std::uint8_t>(960, 1), boolean);
   for (const hid_t type : {boolean, half, pair}) H5Tclose(type);
-  H5Dclose(data);
-  H5Sclose(space);
-  H5Fclose(file);
 }
 
 TEST(CliArrays, WarpKeepsBooleansAndNamesWhatItDoesNotKeep) {

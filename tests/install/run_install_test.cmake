@@ -15,5 +15,12 @@ run(${CMAKE_COMMAND} -S ${EXAMPLES} -B ${root}/examples -G ${GENERATOR}
 run(${CMAKE_COMMAND} --build ${root}/examples --config ${CONFIG})
 run(${CMAKE_CTEST_COMMAND} --test-dir ${root}/examples -C ${CONFIG} --verbose)
 if(WITH_IO)
-  run(${CMAKE_COMMAND} -E chdir ${root} ${root}/prefix/bin/tetwarp --version)
+  # Moved to another folder, the command still finds tetwarp-read, which finds nothing to read.
+  file(RENAME ${root}/prefix ${root}/moved)
+  run(${CMAKE_COMMAND} -E chdir ${root} ${root}/moved/bin/tetwarp --version)
+  file(WRITE ${root}/empty.msh "")
+  execute_process(COMMAND ${root}/moved/bin/tetwarp info ${root}/empty.msh ERROR_VARIABLE error)
+  if(NOT error MATCHES "does not begin with .MeshFormat|this build cannot read")
+    message(FATAL_ERROR "tetwarp-read was not found: ${error}")
+  endif()
 endif()

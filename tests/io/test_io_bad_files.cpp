@@ -157,6 +157,12 @@ TEST_F(BadFiles, AreNamedWhenMeshOffsetsLeaveTheData) {
   error("VTKHDF/Steps/PointDataOffsets/displacement", 6, "/PointData/displacement: rows 6");
 }
 
+/// Rows of two steps at the points of one: which of them a step has, only offsets tell.
+TEST_F(BadFiles, AreNamedWhenRowsOfDisplacementsHaveNoOffsets) {
+  Hdf5Editor(mesh).remove("VTKHDF/Steps/PointDataOffsets");
+  expect_mesh_error("has 10 rows for 5 points, and no dataset Steps/PointDataOffsets/displacement");
+}
+
 TEST_F(BadFiles, AreNamedWhenAMeshHasOtherCells) {
   Hdf5Editor(mesh).dataset<std::uint8_t>("VTKHDF/Types", {2}, {10, 14});
   expect_mesh_error("cell 1 has type 14 (VTK_PYRAMID)");

@@ -4,6 +4,7 @@
 #include <nifti1.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -143,6 +144,37 @@ TEST(NiftiFiles, RegionsAreThoseOfTheWhole) {
     }
   }
   EXPECT_EQ(folder.entry_count(), 3);
+}
+
+/// Cut in the samples, in the last eight bytes, which are checksum and length, or with another
+/// checksum; read as a whole and in blocks.
+TEST(NiftiFiles, ThatGzipHasPackedAreRefusedWhereTheyAreDamaged) {
+  const ScratchFolder folder;
+  Grid grid;
+  grid.dims = {20, 20, 20};
+  Volume volume = make_volume(grid, PixelType::float64);
+  for (std::size_t v = 0; v < 8000; ++v) volume.samples<double>()[v] = std::sin(v);
+  write_nifti(folder / "v.nii.gz", volume);
+  const std::string whole = bytes_of(folder / "v.nii.gz");
+  const std::size_t size = whole.size();
+  std::vector<std::string> bad = {whole};
+  bad[0][size - 8] = static_cast<char>(~bad[0][size - 8]);
+  for (const std::size_t lost : {size / 2, std::size_t{9}, std::size_t{8}, std::size_t{1}}) {
+    bad.push_back(whole.substr(0, size - lost));
+  }
+  for (const std::string& bytes : bad) {
+    store(folder / "v.nii.gz", bytes);
+    const VolumeReader reader(folder / "v.nii.gz", "", 0, {.scratch = folder / "out.nii"});
+    std::vector<double> slice(400);
+
+    const std::string error = io_error([&] { read_nifti(folder / "v.nii.gz"); });
+    const std::string in_blocks = io_error([&] {
+      reader.read({{0, 0, 3}, {20, 20, 4}}, slice.data());
+    });
+
+    EXPECT_NE(error.find("truncated"), std::string::npos) << error;
+    EXPECT_EQ(in_blocks, error);
+  }
 }
 
 /// A series of vectors: all steps of a component stand before the next component.

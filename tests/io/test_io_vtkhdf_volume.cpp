@@ -101,6 +101,27 @@ TEST(VtkhdfVolume, ReadsEitherByteOrder) {
   EXPECT_EQ(read_volume(folder / "v.vtkhdf").samples<double>()[11], 111.0);
 }
 
+/// Labels 3 and -7 with names, in the order of bytes that is not this machine's.
+TEST(VtkhdfVolume, ReadsEnumerationsAsTheirIntegers) {
+  const ScratchFolder folder;
+  const std::vector<std::uint8_t> bytes = {0, 3, 0xff, 0xf9};
+  const auto* const labels = reinterpret_cast<const std::int16_t*>(bytes.data());
+  const hid_t type = H5Tenum_create(H5T_STD_I16BE);
+  H5Tenum_insert(type, "liver", labels);
+  H5Tenum_insert(type, "lung", labels + 1);
+  std::vector<std::int16_t> samples(12, labels[0]);
+  samples[11] = labels[1];
+  write_foreign(folder / "v.vtkhdf", H5T_STD_I32LE);
+  Hdf5Editor(folder / "v.vtkhdf").dataset("VTKHDF/PointData/a", {2, 2, 3}, samples, type);
+  H5Tclose(type);
+
+  const Volume volume = read_volume(folder / "v.vtkhdf");
+
+  ASSERT_EQ(volume.type, PixelType::int16);
+  EXPECT_EQ(volume.samples<std::int16_t>()[0], 3);
+  EXPECT_EQ(volume.samples<std::int16_t>()[11], -7);
+}
+
 TEST(VtkhdfVolume, ReadsHalfPrecisionAsFloat32) {
   const ScratchFolder folder;
   const hid_t half = H5Tcopy(H5T_IEEE_F32LE);

@@ -1,14 +1,9 @@
 /// @file test_mesh_child.cpp
 /// Readers that crash, loop without end, allocate more than the limit or return a damaged mesh.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,22 +15,19 @@ namespace tetwarp::test {
 namespace {
 constexpr ChildLimits limits{20, 0x1p28};
 
-ImportedMesh two_steps() {
-  return {two_tets(), slides({1, 2}), {0.5, 2}, {{"triangle", 3}, {"line", 1}}};
-}
+/// Names of files tell tests/io/fake_reader.cpp how to end.
+class MeshChild : public ::testing::Test {
+ protected:
+  MeshChild() { setenv("TETWARP_READER", TETWARP_FAKE_READER, 1); }
+  ~MeshChild() override { unsetenv("TETWARP_READER"); }
 
-std::string complaint(const std::function<void()>& before_the_end,
-                      const ChildLimits& of_child = limits) {
-  return io_error([&] {
-    read_mesh_in_child("a.vtk", of_child, [&] {
-      before_the_end();
-      return two_steps();
-    });
-  });
-}
+  static std::string complaint(const std::string& path, const ChildLimits& of_child = limits) {
+    return io_error([&] { read_mesh_in_child(path, {}, of_child); });
+  }
+};
 
-TEST(MeshChild, SendsAllMembers) {
-  const ImportedMesh mesh = read_mesh_in_child("a.vtk", limits, two_steps);
+TEST_F(MeshChild, SendsAllMembers) {
+  const ImportedMesh mesh = read_mesh_in_child("sound", {}, limits);
 
   EXPECT_EQ(mesh.mesh.rest_positions, two_tets().rest_positions);
   EXPECT_EQ(mesh.mesh.tets, two_tets().tets);
@@ -45,66 +37,80 @@ TEST(MeshChild, SendsAllMembers) {
   EXPECT_EQ(mesh.skipped, (std::map<std::string, std::int64_t>{{"triangle", 3}, {"line", 1}}));
 }
 
+TEST_F(MeshChild, GetsTheOptions) {
+  const auto options_of = [](const MeshImportOptions& options) {
+    return read_mesh_in_child("sound", options, limits).merged;
+  };
+  EXPECT_EQ(options_of({}), "none, solids");
+  EXPECT_EQ(options_of({.displacement = "u v", .needs_solids = false}), "u v");
+  EXPECT_EQ(options_of({.displacement = ""}), ", solids");
+}
+
 /// More than a pipe and the buffers of both ends hold.
-TEST(MeshChild, SendsMeshesOfManyMegabytes) {
-  const std::vector<Point3> points(500'000, Point3{1, 2, 3});
+TEST_F(MeshChild, SendsMeshesOfManyMegabytes) {
+  const ImportedMesh mesh = read_mesh_in_child("large", {}, limits);
 
-  const ImportedMesh mesh = read_mesh_in_child("a.vtk", limits, [&] {
-    ImportedMesh large;
-    large.mesh.rest_positions = points;
-    return large;
-  });
-
-  EXPECT_EQ(mesh.mesh.rest_positions, points);
+  EXPECT_EQ(mesh.mesh.rest_positions, std::vector<Point3>(500'000, Point3{1, 2, 3}));
 }
 
-TEST(MeshChild, PassesErrorsOnInTheirWords) {
-  const auto fails = [] { throw IoError("a.vtk", "u", "expected three components"); };
-
-  EXPECT_EQ(complaint(fails), "a.vtk: u: expected three components");
-  EXPECT_EQ(complaint([] { throw std::runtime_error("odd"); }), "a.vtk: cannot be read: odd");
+TEST_F(MeshChild, PassesErrorsOnInTheirWords) {
+  EXPECT_EQ(complaint("io error"), "io error: u: expected three components");
+  EXPECT_EQ(complaint("error"), "error: cannot be read: odd");
 }
 
-TEST(MeshChild, MakesOneLineOfEveryEndOfAReader) {
-  const auto text = [](const std::string& end) {
-    return "a.vtk: its reader " + end +
+TEST_F(MeshChild, MakesOneLineOfEveryEndOfAReader) {
+  const auto text = [](const std::string& path, const std::string& end) {
+    return path + ": its reader " + end +
            ": the file is damaged or uses what the library cannot read; write it again";
   };
-  EXPECT_EQ(complaint([] { std::signal(SIGSEGV, SIG_DFL), raise(SIGSEGV); }),
-            text("crashed (Segmentation fault)"));
-  EXPECT_EQ(complaint([] { std::abort(); }), text("crashed (Aborted)"));
-  EXPECT_EQ(complaint([] { _exit(0); }), text("ended without a result"));
-  EXPECT_EQ(complaint([] { std::exit(3); }), text("ended without a result"));
-  EXPECT_EQ(complaint([] { pause(); }, {1, 0x1p28}), text("took more than 1 s"));
+  EXPECT_EQ(complaint("segfault"), text("segfault", "crashed (Segmentation fault)"));
+  EXPECT_EQ(complaint("abort"), text("abort", "crashed (Aborted)"));
+  EXPECT_EQ(complaint("hang", {1, 0x1p28}), text("hang", "took more than 1 s"));
+  for (const char* const path : {"end", "exit", "truncated"}) {
+    EXPECT_EQ(complaint(path), text(path, "ended without a result"));
+  }
 }
 
-TEST(MeshChild, LimitsMemory) {
+TEST_F(MeshChild, LimitsMemory) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "the address sanitizer ends a program that lacks memory";
 #endif
-  const auto allocate = [] {
-    std::vector<std::vector<char>> blocks;
-    blocks.reserve(64);
-    for (int block = 0; block < 64; ++block) blocks.emplace_back(std::size_t{1} << 24, 'x');
-  };
-
-  EXPECT_EQ(complaint(allocate),
-            "a.vtk: cannot be read in 256.0 MiB of memory: damaged, or too large for this machine");
+  EXPECT_EQ(complaint("allocate"),
+            "allocate: cannot be read in 256.0 MiB of memory: damaged, or too large for this "
+            "machine");
 }
 
-TEST(MeshChild, PrintsNothing) {
+TEST_F(MeshChild, PrintsNothing) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
 
-  const std::string error = complaint([] {
-    std::printf("corrupted size\n");
-    std::fprintf(stderr, "corrupted size\n");
-    std::fflush(stdout);
-  });
+  const std::string error = complaint("print");
 
   EXPECT_EQ(error, "");
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(MeshChild, NamesThePlaceOfAReaderThatIsMissing) {
+  setenv("TETWARP_READER", "/nowhere/tetwarp-read", 1);
+
+  EXPECT_EQ(complaint("a.vtk"),
+            "a.vtk: needs the program tetwarp-read, which is not at /nowhere/tetwarp-read; install "
+            "it, or set TETWARP_READER to its path");
+}
+
+TEST_F(MeshChild, TellsThatALibraryIsMissing) {
+  EXPECT_EQ(message_of<std::runtime_error>([] { read_mesh_in_child("library", {}, limits); }),
+            "'" TETWARP_FAKE_READER "' lacks one of its libraries; run it by itself to see which");
+}
+
+TEST_F(MeshChild, IsFoundBesideTheProgram) {
+  unsetenv("TETWARP_READER");
+
+  const std::string error = complaint("none.msh");
+
+  EXPECT_NE(error, "");
+  EXPECT_EQ(error.find("TETWARP_READER"), std::string::npos) << error;
 }
 
 /// Bytes in memory in place of those of a child.
@@ -120,7 +126,7 @@ struct Bytes {
 };
 
 /// A count that was damaged in the child must not become an allocation.
-TEST(MeshChild, DoesNotTrustCounts) {
+TEST(ChildMessage, DoesNotTrustCounts) {
   const auto read = [](std::uint64_t count) {
     Bytes bytes{std::vector<std::byte>(64)};
     std::memcpy(bytes.all.data(), &count, sizeof count);

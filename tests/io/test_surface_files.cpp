@@ -10,7 +10,7 @@
 
 #include <tetwarp/scene_io.hpp>
 
-#include "io/import/surface_seams.hpp"
+#include "io/reader/surface_seams.hpp"
 #include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {

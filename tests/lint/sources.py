@@ -17,7 +17,7 @@ PUBLIC = ("host/tetwarp", "io/tetwarp", "kernels/base/tetwarp")
 VARIANTS = ("cuda", "nocuda", "cpu", "reference", "avx2", "avx512", "base", "gif", "nogif", "gmsh",
             "nogmsh", "mpi", "nompi", "vtk", "novtk")
 # Programs: main and its subcommands have no header.
-PROGRAMS = re.compile(r"host/cli/(main|(\w+/)?cmd_\w+)\.cpp")
+PROGRAMS = re.compile(r"(host/cli|io/reader)/(main|(\w+/)?cmd_\w+)\.cpp")
 # Other files whose functions a header of another name declares, by this header.
 DECLARED_IN = {
     # Public headers of several subjects: a file for each, in the folder of the subject.
@@ -49,9 +49,9 @@ DECLARED_IN = {
         "host/reference/warp/backend_reference.cpp", "host/warp/cpu/backend_cpu.cpp",
         "host/warp/cuda/backend_cuda.cu", "host/warp/cuda/backend_nocuda.cpp"],
     "host/contact/cuda/device.hpp": ["host/contact/cuda/contact_nocuda.cpp"],
-    "io/import/mesh_import.hpp": [
-        "io/import/mesh_gmsh.cpp", "io/import/mesh_nogmsh.cpp", "io/import/mesh_novtk.cpp",
-        "io/import/mesh_vtk.cpp", "io/import/surface_vtk.cpp"],
+    "io/reader/mesh_readers.hpp": [
+        "io/reader/mesh_gmsh.cpp", "io/reader/mesh_nogmsh.cpp", "io/reader/mesh_novtk.cpp",
+        "io/reader/mesh_vtk.cpp", "io/reader/surface_vtk.cpp"],
     # Compiling CUB takes long: only this file includes it.
     "kernels/exec/exec_cuda.cuh": ["kernels/exec/primitives_cuda.cu"],
 }

@@ -125,7 +125,8 @@ const ContactSlip contact_slips[] = {
      "solver.contact_tolerance: is 0, expected more than 0 and less than 1"},
     {"\"max_passes\": 7", "\"max_passes\": 0",
      "solver.max_passes: is the number 0, expected a whole number from 1"},
-    {"\"max_substeps\": 8", "\"max_substeps\": 100000", "solver.max_substeps: is 100000, expected"},
+    {"\"max_substeps\": 8", "\"max_substeps\": 1025",
+     "solver.max_substeps: is 1025, expected 1 to 1024"},
     {"\"max_substeps\": 8", "\"rule\": \"serial\"", "solver.rule: is no known word, expected"},
     {"[\"contact\"]", "[\"contacts\"]", "output.fields[0]: is no field, expected velocity"}};
 

@@ -137,7 +137,8 @@ class Hdf5Editor {
     return *this;
   }
 
-  /// Without values the dataset has that shape and nothing in it, chunked.
+  /// Without values the dataset has that shape and nothing in it, chunked. Values of an enumeration
+  /// are in the file's byte order.
   template <class T>
   Hdf5Editor& dataset(const std::string& name,
                       const std::vector<hsize_t>& dims,
@@ -149,10 +150,12 @@ class Hdf5Editor {
     const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
     const std::vector<hsize_t> chunk(dims.size(), 1);
     if (values.empty()) H5Pset_chunk(properties, rank, chunk.data());
-    const hid_t data = H5Dcreate2(file_, name.c_str(), file_type < 0 ? native_type(T{}) : file_type,
-                                  space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    if (file_type < 0) file_type = native_type(T{});
+    const hid_t data =
+        H5Dcreate2(file_, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
     if (!values.empty()) {
-      H5Dwrite(data, native_type(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+      const hid_t memory_type = H5Tget_class(file_type) == H5T_ENUM ? file_type : native_type(T{});
+      H5Dwrite(data, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
     }
     H5Dclose(data);
     H5Pclose(properties);

@@ -20,9 +20,9 @@
 #include <tetwarp/error.hpp>
 
 #include "io/files/extension.hpp"
-#include "io/import/mesh_import.hpp"
-#include "io/import/mesh_vtk_arrays.hpp"
-#include "io/import/vtk_error_notes.hpp"
+#include "io/reader/mesh_readers.hpp"
+#include "io/reader/mesh_vtk_arrays.hpp"
+#include "io/reader/vtk_error_notes.hpp"
 
 namespace tetwarp {
 namespace {

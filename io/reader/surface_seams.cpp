@@ -1,6 +1,6 @@
 /// @file surface_seams.cpp
 /// Finds the points on open edges, and gives those at one place the first one's number.
-#include "io/import/surface_seams.hpp"
+#include "io/reader/surface_seams.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-/// @file mesh_import.hpp
-/// Shared by the readers of meshes of other programs.
+/// @file mesh_readers.hpp
+/// The readers of meshes of other programs, and what they share.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -22,8 +22,8 @@ ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& opt
 /// are divided into triangles.
 ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options);
 
-/// Reads a mesh in this process and leaves most checks to import_mesh(), which calls it in a child.
-ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& options);
+/// Reads a mesh by the library of its format. Most checks are left to import_mesh().
+ImportedMesh read_foreign_mesh(const std::string& path, const MeshImportOptions& options);
 
 /// A kind of cell.
 struct CellKind {

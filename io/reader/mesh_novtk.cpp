@@ -2,14 +2,14 @@
 /// In place of mesh_vtk.cpp where VTK was missing when this was built.
 #include <tetwarp/error.hpp>
 
-#include "io/import/mesh_import.hpp"
+#include "io/reader/mesh_readers.hpp"
 
 namespace tetwarp {
 
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions&) {
   throw IoError(path, "",
                 "this build cannot read VTK's meshes; install libvtk9-dev and build again, or "
-                "convert to .vtkhdf or .msh");
+                "convert to VTKHDF of type UnstructuredGrid");
 }
 
 ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options) {

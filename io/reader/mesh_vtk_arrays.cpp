@@ -1,6 +1,6 @@
 /// @file mesh_vtk_arrays.cpp
 /// Copies VTK's arrays, as far as their types are known.
-#include "io/import/mesh_vtk_arrays.hpp"
+#include "io/reader/mesh_vtk_arrays.hpp"
 
 #include <vtkAbstractArray.h>
 #include <vtkCellData.h>

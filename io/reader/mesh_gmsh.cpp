@@ -12,9 +12,8 @@
 #include <tetwarp/error.hpp>
 #include <unordered_map>
 
-#include "io/h5/value_names.hpp"
-#include "io/import/gmsh_library.hpp"
-#include "io/import/mesh_import.hpp"
+#include "io/reader/gmsh_library.hpp"
+#include "io/reader/mesh_readers.hpp"
 
 namespace tetwarp {
 namespace {
@@ -132,15 +131,6 @@ void add_group(const GmshLibrary& gmsh, int entity, int group, CellGroups& group
   }
 }
 
-/// Adds names of values to the last array, unless a file cannot hold them.
-void add_names(std::map<std::int64_t, std::string> names, ImportedMesh& into) {
-  if (text_of_names(names).size() <= max_value_names) {
-    into.arrays.back().value_names = std::move(names);
-  } else {
-    into.left_out.push_back("names of " + std::to_string(names.size()) + " groups");
-  }
-}
-
 std::string name_of_group(const GmshLibrary& gmsh, int dimension, int group) {
   GmshArray<char> name(gmsh);
   gmsh.call<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName", dimension, group,
@@ -174,7 +164,7 @@ void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMes
                                                                            : 0);
     }
     add_numbers(place == 0 ? "group" : "group_" + std::to_string(place + 1), true, rows, into);
-    add_names(names, into);
+    into.arrays.back().value_names = names;
   }
 }
 

@@ -1,0 +1,12 @@
+/// @file main.cpp
+/// The program tetwarp-read: reads one mesh by VTK or Gmsh and sends it to the program that has
+/// started it.
+#include <cstdlib>
+
+#include "io/reader/mesh_readers.hpp"
+#include "io/reader/mesh_sender.hpp"
+
+int main(int argc, char** argv) {
+  // Without the exit handlers of the libraries, which may crash after a damaged file.
+  std::_Exit(tetwarp::send_mesh(argc, argv, tetwarp::read_foreign_mesh));
+}
