@@ -25,7 +25,7 @@ std::vector<BodyBox> boxes_of(const test::CollideScene& scene) {
   std::vector<Box> boxes(s.vertex_body.size());
   const VertexRun run{0, vertices, 0};
   RunBox all;
-  VertexBoxBody body{};
+  VertexBoxOp body{};
   body.runs = {&run, 1};
   body.motion.start = numbers(scene.motion.start.vertices);
   body.motion.end = numbers(scene.motion.end.vertices);

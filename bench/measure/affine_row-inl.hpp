@@ -22,7 +22,7 @@ namespace tetwarp::bench {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Samples one row in strips: positions by vectors, neighbours by scalar reads, which are faster
+/// Samples one row in strips: positions by vectors, neighbors by scalar reads, which are faster
 /// than gather instructions on many processors, blends by vectors.
 template <class T>
 class RowSampler {
@@ -60,7 +60,7 @@ class RowSampler {
   static constexpr std::int64_t lanes = hn::MaxLanes(Tag());
   static_assert(strip % lanes == 0);
 
-  /// Offsets of the lower neighbours, and the fractions beyond them.
+  /// Offsets of the lower neighbors, and the fractions beyond them.
   HWY_INLINE void locate(std::int64_t begin, std::int64_t count) {
     const Tag d;
     const OffsetTag di;
@@ -91,7 +91,7 @@ class RowSampler {
     }
   }
 
-  /// Reads both neighbours along x on each of the four surrounding lines.
+  /// Reads both neighbors along x on each of the four surrounding lines.
   HWY_INLINE void fetch(std::int64_t count) {
     const std::int64_t row = job_.source_dims[0], slice = row * job_.source_dims[1];
     for (std::int64_t s = 0; s < count; ++s) {
@@ -129,7 +129,7 @@ class RowSampler {
     return hn::MulAdd(fraction, hn::Sub(b, a), a);
   }
 
-  /// Lower and upper neighbours of a vector of voxels.
+  /// Lower and upper neighbors of a vector of voxels.
   HWY_INLINE static void load_pairs(const T* pairs, Vec& a, Vec& b) {
     const Tag d;
     if constexpr (std::is_floating_point_v<T>) {

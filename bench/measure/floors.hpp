@@ -53,7 +53,7 @@ enum class RowOrder {
 };
 
 /// The sampling floor. Each row is clipped once to the part that falls into the source; that part
-/// is sampled with vectors, neighbours clamped at the rim; the rest is zero.
+/// is sampled with vectors, neighbors clamped at the rim; the rest is zero.
 /// @returns voxels that fall into the source
 std::int64_t sample_affine(const AffineJob& job, RowOrder order, int threads);
 

@@ -26,7 +26,7 @@ class Sampler16 {
       fraction[axis] = _mm512_sub_ps(inside, _mm512_cvtepi32_ps(low));
       offset = _mm512_add_epi32(_mm512_mullo_epi32(offset, _mm512_set1_epi32(dims)), low);
     }
-    // The low and the high half of the lanes; each lane becomes a pair of neighbours along x.
+    // The low and the high half of the lanes; each lane becomes a pair of neighbors along x.
     const __m512i low_pairs = _mm512_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
     const __m512i high_pairs = _mm512_add_epi32(low_pairs, _mm512_set1_epi32(8));
     const __m512 low =
@@ -47,7 +47,7 @@ class Sampler16 {
     return _mm512_fmadd_ps(fraction, _mm512_sub_ps(b, a), a);
   }
 
-  /// Gathers of 64 bits fetch both neighbours along x; they are blended along y and z.
+  /// Gathers of 64 bits fetch both neighbors along x; they are blended along y and z.
   __m512 pairs_at(__m256i offset, __m512 fraction_y, __m512 fraction_z, __mmask8 mask) const {
     const auto gather = [&](const float* base) {
       return _mm512_castpd_ps(

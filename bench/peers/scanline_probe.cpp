@@ -19,7 +19,7 @@ struct ScanTet {
   int low[3], high[3];
 };
 
-/// The plane of the face opposite to a node. Corners are sorted by node, so that both neighbours
+/// The plane of the face opposite to a node. Corners are sorted by node, so that both neighbors
 /// compute the same crossing.
 Face face_of(const PeerTet& tet, const std::array<std::int32_t, 4>& nodes, std::size_t opposite) {
   std::size_t corner[3], count = 0;

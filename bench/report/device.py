@@ -49,7 +49,7 @@ def ncu_kernels(text):
         value = re.sub(r"[^0-9.eE+-]", "", line["Metric Value"])
         unit = line["Metric Unit"]
         kernel = re.sub(r"[(<].*", "", line["Kernel Name"]).split("::")[-1]
-        body = re.search(r"(\w+Body)", line["Kernel Name"])
+        body = re.search(r"(\w+(?:Body|Op)\b)", line["Kernel Name"])
         name = f"{kernel} of {body[1]}" if body else kernel
         kernels.setdefault(name, {}).setdefault((column, unit), []).append(float(value or "nan"))
     return {
@@ -124,8 +124,8 @@ def self_test():
            "copy_ratio": 3.0}
     results = {"context": {"date": "2026-01-01T00:00", "device": "X"}, "benchmarks": [row]}
     csv = ('"ID","Kernel Name","Metric Name","Metric Unit","Metric Value"\n'
-           '"0","void tetwarp::each_kernel<tetwarp::TetSetupBody>(T1)","Duration","us","12.5"\n')
+           '"0","void tetwarp::each_kernel<tetwarp::TetSetupOp>(T1)","Duration","us","12.5"\n')
     machine, sections = sections_of({"resident.json": json.dumps(results), "ncu-warp.log": csv})
     assert "X" in machine, machine
     assert "| W1_torso_700 | 0.5 | 0.4 | 0.25 | 2 | 3 |" in sections[0][1], sections[0]
-    assert sections[1][1] == ["- each_kernel of TetSetupBody: time 12.5 us"], sections[1]
+    assert sections[1][1] == ["- each_kernel of TetSetupOp: time 12.5 us"], sections[1]

@@ -28,7 +28,7 @@ double image_at(const Point3& x, double n) {
 }
 
 /// The largest error of a wave of height 1 whose phase grows by `slope` per voxel: slope / 2 for
-/// the nearest sample, slope^2 / 8 between linear neighbours; for the others the leading terms of
+/// the nearest sample, slope^2 / 8 between linear neighbors; for the others the leading terms of
 /// sum w_i exp(j slope (i - t)) - 1, rounded up.
 double wave_bound(Filter filter, double slope) {
   switch (filter) {

@@ -25,7 +25,7 @@ class TwoBuffers {
  public:
   TwoBuffers(const OverlapCase& row, const VolumeView& source)
       : scene_(inputs().scene(row.workload)),
-        poses_{scene_.deformed, nudged_centre(scene_.deformed, 1.0)},
+        poses_{scene_.deformed, nudged_center(scene_.deformed, 1.0)},
         bytes_(static_cast<std::size_t>(scene_.output_grid.voxel_count()) * size_of(source.type)),
         warper_(std::span(&source, 1),
                 scene_.mesh,

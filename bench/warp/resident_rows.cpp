@@ -29,7 +29,7 @@ class ResidentJob {
                  .backend = Backend::cuda,
                  .stage_times = stage_times}) {
     positions_[0].put(scene.deformed.data());
-    positions_[1].put(nudged_centre(scene.deformed, 1.0).data());
+    positions_[1].put(nudged_center(scene.deformed, 1.0).data());
   }
 
   StepReport step(std::size_t pose) {

@@ -22,7 +22,7 @@ class Swing {
  public:
   Swing(const SeriesCase& row, const VolumeView& source, bool is_update)
       : scene_(inputs().scene(row.workload)),
-        poses_{scene_.deformed, nudged_centre(scene_.deformed, 0.01 * row.moved_percent)},
+        poses_{scene_.deformed, nudged_center(scene_.deformed, 0.01 * row.moved_percent)},
         bytes_(static_cast<std::size_t>(scene_.output_grid.voxel_count()) * size_of(source.type)),
         output_(bytes_),
         is_update_(is_update),

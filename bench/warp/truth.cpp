@@ -218,7 +218,7 @@ Accuracy compare(const Truth& truth,
 
 double error_bound(PixelType type, Filter filter) {
   if (filter == Filter::nearest) return 0;
-  // Positions are good to 1e-5 voxel in float32 and neighbours differ by less than the range.
+  // Positions are good to 1e-5 voxel in float32 and neighbors differ by less than the range.
   if (type == PixelType::float64) return 1e-9;
   return is_integer(type) ? 0.5 / range_of(type) + 1e-5 : 1e-5;
 }

@@ -14,11 +14,11 @@ namespace tetwarp::bench {
 namespace {
 constexpr double pi = std::numbers::pi;
 
-Point3 bent(const Point3& p, const Point3& centre, const Point3& uvw) {
+Point3 bent(const Point3& p, const Point3& center, const Point3& uvw) {
   const double turn = 0.35 * (uvw[2] - 0.5);
-  const double x = p[0] - centre[0], y = p[1] - centre[1];
-  return {centre[0] + std::cos(turn) * x - std::sin(turn) * y,
-          centre[1] + std::sin(turn) * x + std::cos(turn) * y + 12 * std::sin(pi * uvw[0]),
+  const double x = p[0] - center[0], y = p[1] - center[1];
+  return {center[0] + std::cos(turn) * x - std::sin(turn) * y,
+          center[1] + std::sin(turn) * x + std::cos(turn) * y + 12 * std::sin(pi * uvw[0]),
           p[2] + 8 * std::sin(2 * pi * uvw[0] + 1) * std::cos(pi * uvw[1])};
 }
 
@@ -37,36 +37,36 @@ Point3 moved_by_modes(const Point3& p, const Point3& uvw) {
   return moved;
 }
 
-Point3 swum(const Point3& p, const Point3& centre, const Point3& uvw) {
+Point3 swum(const Point3& p, const Point3& center, const Point3& uvw) {
   const double along = 2 * pi * uvw[2];
   const double turn = -0.35 * std::cos(along);
-  const double x = p[0] - centre[0];
-  return {centre[0] + 40 * std::sin(along) + std::cos(turn) * x, p[1], p[2] + std::sin(turn) * x};
+  const double x = p[0] - center[0];
+  return {center[0] + 40 * std::sin(along) + std::cos(turn) * x, p[1], p[2] + std::sin(turn) * x};
 }
 
 std::vector<Point3> deform(const Workload& workload, const std::vector<Point3>& nodes) {
-  Point3 centre;
+  Point3 center;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    centre[axis] = static_cast<double>(workload.dims[axis] - 1) / 2;
+    center[axis] = static_cast<double>(workload.dims[axis] - 1) / 2;
   }
   if (workload.deformation == Deformation::ties || workload.deformation == Deformation::shift) {
     return scenes::shifted(nodes, {3, -2, 5});
   }
-  if (workload.deformation == Deformation::rotation) return scenes::rotated_45_45(nodes, centre);
+  if (workload.deformation == Deformation::rotation) return scenes::rotated_45_45(nodes, center);
   std::vector<Point3> deformed;
   for (const Point3& p : nodes) {
     Point3 uvw;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       uvw[axis] = (p[axis] + 0.5) / static_cast<double>(workload.dims[axis]);
     }
-    deformed.push_back(workload.deformation == Deformation::bend    ? bent(p, centre, uvw)
+    deformed.push_back(workload.deformation == Deformation::bend    ? bent(p, center, uvw)
                        : workload.deformation == Deformation::modes ? moved_by_modes(p, uvw)
-                                                                    : swum(p, centre, uvw));
+                                                                    : swum(p, center, uvw));
   }
   return deformed;
 }
 
-/// All voxel centres of the nodes' bounding box.
+/// All voxel centers of the nodes' bounding box.
 Grid bounding_grid(const std::vector<Point3>& nodes) {
   Grid grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -187,7 +187,7 @@ Buffer make_image(const Grid& grid, PixelType type, Image image, int components)
   return buffer;
 }
 
-std::vector<Point3> nudged_centre(const std::vector<Point3>& nodes, double share) {
+std::vector<Point3> nudged_center(const std::vector<Point3>& nodes, double share) {
   Point3 middle{0, 0, 0};
   for (const Point3& p : nodes) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,7 +1,7 @@
 /// @file workloads.hpp
 /// The measured inputs: meshes, deformations and images from formulas and counter-based noise.
 ///
-/// Unit spacing, voxel centres on integers; a mesh is a box of cells, five tetrahedra each; the
+/// Unit spacing, voxel centers on integers; a mesh is a box of cells, five tetrahedra each; the
 /// output grid is the integer bounding box of the deformed mesh.
 #pragma once
 #include <array>
@@ -18,8 +18,8 @@ namespace tetwarp::bench {
 
 /// How the nodes move.
 enum class Deformation {
-  ties,      ///< by whole voxels, planes of the mesh through voxel centres: all kinds of ties
-  shift,     ///< by whole voxels, planes of the mesh between voxel centres
+  ties,      ///< by whole voxels, planes of the mesh through voxel centers: all kinds of ties
+  shift,     ///< by whole voxels, planes of the mesh between voxel centers
   bend,      ///< twisted about z, bent along x, a wave along z
   rotation,  ///< 45 degrees about z, then 45 degrees about x
   modes,     ///< 18 smooth sine modes, none of them inverts a tetrahedron
@@ -51,7 +51,7 @@ scenes::Scene make_scene(const Workload& workload);
 
 /// Content of a source volume.
 enum class Image {
-  textured,  ///< waves and noise everywhere: no two neighbours are equal
+  textured,  ///< waves and noise everywhere: no two neighbors are equal
   in_air     ///< the same within an ellipsoid that fills 41 % of the grid, zero around it
 };
 
@@ -64,6 +64,6 @@ Buffer make_image(const Grid& grid, PixelType type, Image image, int components 
 
 /// The nodes, of which a `share`, those nearest to the middle of the mesh, moves by up to half a
 /// voxel per axis.
-std::vector<Point3> nudged_centre(const std::vector<Point3>& nodes, double share);
+std::vector<Point3> nudged_center(const std::vector<Point3>& nodes, double share);
 
 }  // namespace tetwarp::bench

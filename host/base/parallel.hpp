@@ -47,18 +47,18 @@ inline int threads_for(int threads, std::int64_t count) {
   return static_cast<int>(std::min<std::int64_t>(threads, 1 + count / per_thread));
 }
 
-/// body(i) once for every i in [0, count), as parallel_tasks(), in contiguous ranges: four per
+/// op(i) once for every i in [0, count), as parallel_tasks(), in contiguous ranges: four per
 /// thread, so that threads which start late take fewer.
-/// @param body  copied, so that the compiler can keep its members in registers
-template <class Body>
-void parallel_for(int threads, std::int64_t count, const Body& body) {
-  const auto run = [](const Body own, std::int64_t begin, std::int64_t end) {
+/// @param op  copied, so that the compiler can keep its members in registers
+template <class Op>
+void parallel_for(int threads, std::int64_t count, const Op& op) {
+  const auto run = [](const Op own, std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) own(i);
   };
-  if (threads <= 1) return run(body, 0, count);
+  if (threads <= 1) return run(op, 0, count);
   const std::int64_t ranges = std::min<std::int64_t>(count, 4 * threads);
   parallel_tasks(threads, ranges, [&](std::int64_t range) {
-    run(body, count * range / ranges, count * (range + 1) / ranges);
+    run(op, count * range / ranges, count * (range + 1) / ranges);
   });
 }
 

@@ -91,10 +91,10 @@ class BroadPhase {
     const GridPlan* const plan = exec_.input(&host_plan_, 1, plan_).data;
     const View<const Box> boxes = item_boxes_.boxes();
     const View<const std::int8_t> sizes = item_boxes_.sizes();
-    exec_.append("collide/item_cells", item_count(), ItemCellsBody{plan, boxes, sizes}, entries_);
+    exec_.append("collide/item_cells", item_count(), ItemCellsOp{plan, boxes, sizes}, entries_);
     exec_.sort_pairs("collide/sort", entries_, host_plan_.key_bits);
     exec_.append("collide/entry_pairs", entries_.size(),
-                 EntryPairsBody{scene, plan, entries_.view(), boxes, sizes}, pairs_,
+                 EntryPairsOp{scene, plan, entries_.view(), boxes, sizes}, pairs_,
                  most_pairs(item_count()));
   }
 

@@ -187,7 +187,7 @@ class DetectorPipeline {
     } catch (const TooManyPairs&) {
       return 0;
     }
-    const PairGapBody gaps{buffers_.scene(), at_start, features_.view(), {}};
+    const PairGapOp gaps{buffers_.scene(), at_start, features_.view(), {}};
     double least = limit;
     for (std::int64_t i = 0; i < gaps.pairs.size; ++i) {
       std::int32_t bodies[2];

@@ -22,7 +22,7 @@ class FeatureGaps {
                   View<const FeaturePair> pairs) {
     const std::int64_t runs = (pairs.size + gap_run - 1) / gap_run;
     exec_.resize(gaps_, runs);
-    exec_.for_each("collide/pair_gap", runs, PairGapBody{scene, motion, pairs, exec_.view(gaps_)});
+    exec_.for_each("collide/pair_gap", runs, PairGapOp{scene, motion, pairs, exec_.view(gaps_)});
     const View<const PairGap> gaps = exec_.on_host(exec_.view(std::as_const(gaps_)), host_gaps_);
     PairGap nearest = gaps[0];
     for (std::int64_t r = 1; r < gaps.size; ++r) {

@@ -39,9 +39,9 @@ class FeaturePairs {
     exec_.put(near_.planes, planes_);
     const std::int64_t vertices = near_.planes.empty() ? 0 : std::ssize(surfaces_.vertex_body);
     exec_.append("collide/pair_features", broad.pairs().size + vertices,
-                 PairFeaturesBody{buffers_.scene(), broad.pairs(), motion, distance,
-                                  PlaneView{exec_.view(std::as_const(start_)),
-                                            exec_.view(std::as_const(planes_))}},
+                 PairFeaturesOp{buffers_.scene(), broad.pairs(), motion, distance,
+                                PlaneView{exec_.view(std::as_const(start_)),
+                                          exec_.view(std::as_const(planes_))}},
                  pairs_, 8 * most_pairs(broad.item_count()));
     counts.pairs += pairs_.size();
   }

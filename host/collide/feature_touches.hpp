@@ -17,7 +17,7 @@ class FeatureTouches {
  public:
   explicit FeatureTouches(Exec& exec) : exec_(exec) {}
 
-  /// Finds the pairs that touch or are near at the start, as TouchFilterBody.
+  /// Finds the pairs that touch or are near at the start, as TouchFilterOp.
   void find(const CollideView& scene,
             const MotionView& motion,
             const CcdLimits& limits,
@@ -27,10 +27,10 @@ class FeatureTouches {
             DetectionCounts& counts) {
     exec_.resize(results_, pairs.size);
     exec_.for_each("collide/pair_touch", pairs.size,
-                   PairTouchBody{scene, motion, limits, pairs, exec_.view(results_)});
+                   PairTouchOp{scene, motion, limits, pairs, exec_.view(results_)});
     exec_.append(
         "collide/pair_touch", pairs.size,
-        TouchFilterBody{scene, is_still, pairs, exec_.view(std::as_const(results_)), near_at_start},
+        TouchFilterOp{scene, is_still, pairs, exec_.view(std::as_const(results_)), near_at_start},
         touches_);
     counts.evaluations += touches_.tally();
   }

@@ -39,16 +39,16 @@ class ItemBoxes {
     exec_.put(partners.bodies, partner_bodies_);
     exec_.for_each(
         "collide/item_box", count_,
-        ItemBoxBody{surfaces_.scene(), vertex_boxes, view(body_boxes_), view(partner_start_),
-                    view(partner_bodies_), largest_, exec_.view(boxes_), exec_.view(sizes_)});
+        ItemBoxOp{surfaces_.scene(), vertex_boxes, view(body_boxes_), view(partner_start_),
+                  view(partner_bodies_), largest_, exec_.view(boxes_), exec_.view(sizes_)});
   }
 
   /// @returns number of boxes of each size, skipped ones left out
   std::array<std::int64_t, item_sizes> count_sizes() {
     exec_.for_each("collide/item_box", (count_ + size_run - 1) / size_run,
-                   SizeCountBody{sizes(), exec_.view(size_counts_)});
+                   SizeCountOp{sizes(), exec_.view(size_counts_)});
     exec_.for_each("collide/item_box", item_sizes,
-                   SizeSumBody{view(size_counts_), exec_.view(size_sums_)});
+                   SizeSumOp{view(size_counts_), exec_.view(size_sums_)});
     const View<const std::int32_t> sums = exec_.on_host(view(size_sums_), host_size_sums_);
     std::array<std::int64_t, item_sizes> counts{};
     std::copy_n(sums.data, item_sizes, counts.begin());
@@ -57,7 +57,7 @@ class ItemBoxes {
 
   std::int64_t count() const { return count_; }
   View<const Box> boxes() const { return view(boxes_); }
-  /// As ItemBoxBody::sizes.
+  /// As ItemBoxOp::sizes.
   View<const std::int8_t> sizes() const { return view(sizes_); }
   /// Boxes of size 0 are 2^largest() to 2^(largest() + 1) [m].
   int largest() const { return largest_; }

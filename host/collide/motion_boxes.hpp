@@ -46,11 +46,11 @@ class MotionBoxes {
   View<const RunBox> unite(const MotionView& motion, double distance, double fraction, bool finds) {
     exec_.for_each(
         "collide/vertex_box", levels_[1],
-        VertexBoxBody{surfaces_.runs(), motion, surfaces_.radii(), distance / 2, distance / 2,
-                      fraction, finds ? 1 : 0, exec_.view(found_), exec_.view(run_boxes_)});
+        VertexBoxOp{surfaces_.runs(), motion, surfaces_.radii(), distance / 2, distance / 2,
+                    fraction, finds ? 1 : 0, exec_.view(found_), exec_.view(run_boxes_)});
     for (std::size_t k = 1; k + 1 < levels_.size(); ++k) {
       exec_.for_each("collide/vertex_box", levels_[k + 1] - levels_[k],
-                     BoxUniteBody{surfaces_.runs(), levels_[k], exec_.view(run_boxes_)});
+                     BoxUniteOp{surfaces_.runs(), levels_[k], exec_.view(run_boxes_)});
     }
     const std::int64_t last = levels_[levels_.size() - 2];
     return exec_.on_host(

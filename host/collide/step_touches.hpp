@@ -79,13 +79,13 @@ class StepTouches {
     first_planes_view_ = exec_.keep(motion.plane_end, first_planes_);
     touches_.set_first(found, view_of(motion));
     sunk_.leave_out(found, view_of(motion), touches_.first());
-    exec_.append(label, found.size, HitBody{found, std::as_const(touches_).first()}, hits_);
+    exec_.append(label, found.size, HitOp{found, std::as_const(touches_).first()}, hits_);
     exec_.wait();  // the caller may change the motion after this
     return found.size;
   }
   std::int64_t add_later(const MotionView& motion, View<const FeatureTouch> found) {
     if (pass_ == 1) known_.add(exec_.on_host(hits_.view(), host_hits_));
-    exec_.append(label, found.size, NearestHitBody{found, view_of(motion)}, hits_);
+    exec_.append(label, found.size, NearestHitOp{found, view_of(motion)}, hits_);
     const std::vector<FeatureTouch>* pairs = &known_.add(exec_.on_host(hits_.view(), host_hits_));
     if (pairs->empty()) pairs = &known_.of_rigid_bodies();
     if (pairs->empty()) return 0;

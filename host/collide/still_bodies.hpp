@@ -30,7 +30,7 @@ class StillBodies {
   void find_reached(const CollideView& scene, View<const FeatureTouch> touches) {
     reached_.clear();
     if (are_none()) return;
-    exec_.append("collide/touches", touches.size, ReachedBody{scene, view(), touches}, list_);
+    exec_.append("collide/touches", touches.size, ReachedOp{scene, view(), touches}, list_);
     const View<const std::int32_t> found = exec_.on_host(list_.view(), host_list_);
     reached_.assign(found.data, found.data + found.size);
     std::ranges::sort(reached_);

@@ -25,15 +25,15 @@ class SunkHits {
   /// @param touches  in and out, of these
   void leave_out(View<const FeatureTouch> pairs, const TouchView& view, View<PairTouch> touches) {
     const View<const PairTouch> all{touches.data, touches.size};
-    exec_.append(label, touches.size, SinkBody{all, view, owners_}, sinks_);
+    exec_.append(label, touches.size, SinkOp{all, view, owners_}, sinks_);
     if (sinks_.size() == 0) return;
     exec_.sort_pairs(label, sinks_, key_bits_);
-    exec_.append(label, sinks_.size(), FirstPushBody{all, sinks_.view()}, first_);
+    exec_.append(label, sinks_.size(), FirstPushOp{all, sinks_.view()}, first_);
     exec_.resize(ways_, owner_count_);
-    exec_.for_each(label, owner_count_, NoWayOutBody{exec_.view(ways_)});
-    exec_.for_each(label, first_.size(), WayOutBody{all, first_.view(), exec_.view(ways_)});
+    exec_.for_each(label, owner_count_, NoWayOutOp{exec_.view(ways_)});
+    exec_.for_each(label, first_.size(), WayOutOp{all, first_.view(), exec_.view(ways_)});
     exec_.for_each(label, pairs.size,
-                   SunkHitBody{pairs, view, owners_, exec_.view(std::as_const(ways_)), touches});
+                   SunkHitOp{pairs, view, owners_, exec_.view(std::as_const(ways_)), touches});
   }
 
  private:

@@ -17,7 +17,7 @@ namespace tetwarp {
 ///
 /// - A touch counts only if its nearest points are what is nearest of both surfaces around them,
 /// and
-///   no other contact of the step forbids it; see TouchBody and sink_stages.hpp.
+///   no other contact of the step forbids it; see TouchOp and sink_stages.hpp.
 /// - A vertex and a body: the touch at the nearest part becomes a contact. A touch at another part
 ///   of the body becomes a contact, too, if its normal differs by more than 5 degrees from the
 ///   normals of all nearer parts that became contacts, so that a ball in a ring has contacts all
@@ -50,16 +50,16 @@ class TouchChoice {
                                       const CollideView& scene,
                                       const TouchAreaView& areas,
                                       View<const double> start) {
-    exec_.fill(label, touches.size(), TouchKeyBody{touches, vertex_count_}, order_);
+    exec_.fill(label, touches.size(), TouchKeyOp{touches, vertex_count_}, order_);
     exec_.sort_pairs(label, order_, key_bits_);
     exec_.resize(mark_, order_.size());
     exec_.resize(ordered_, order_.size());
     exec_.for_each(
         label, order_.size(),
-        TouchChoiceBody{touches, scene, order_.view(), exec_.view(ordered_), exec_.view(mark_)});
+        TouchChoiceOp{touches, scene, order_.view(), exec_.view(ordered_), exec_.view(mark_)});
     exec_.append(label, order_.size(),
-                 ChosenTouchBody{touches, areas, start, exec_.view(std::as_const(ordered_)),
-                                 exec_.view(std::as_const(mark_))},
+                 ChosenTouchOp{touches, areas, start, exec_.view(std::as_const(ordered_)),
+                               exec_.view(std::as_const(mark_))},
                  chosen_);
     const View<const ChosenTouch> chosen = exec_.on_host(chosen_.view(), host_chosen_);
     return {chosen.data, static_cast<std::size_t>(chosen.size)};

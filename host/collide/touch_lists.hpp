@@ -36,7 +36,7 @@ class TouchLists {
     Vector& joined = later_[1 - later_now_];
     exec_.resize(joined, count + count / 2);
     exec_.for_each(label, count,
-                   TouchCopyBody{{later(), fresh, fresh_ends_.view()}, exec_.view(joined)});
+                   TouchCopyOp{{later(), fresh, fresh_ends_.view()}, exec_.view(joined)});
     later_now_ = 1 - later_now_;
     later_count_ = count;
   }
@@ -58,11 +58,11 @@ class TouchLists {
             Vector& touches,
             List& ends) {
     exec_.resize(touches, pairs.size);
-    exec_.for_each(label, pairs.size, TouchBody{pairs, view, pass, exec_.view(touches)});
+    exec_.for_each(label, pairs.size, TouchOp{pairs, view, pass, exec_.view(touches)});
     ends.clear();
     if (!has_capsules_) return;
     exec_.append(label, pairs.size,
-                 EndTouchBody{pairs, exec_.view(std::as_const(touches)), view, pass}, ends);
+                 EndTouchOp{pairs, exec_.view(std::as_const(touches)), view, pass}, ends);
   }
   View<const PairTouch> later() const {
     return {exec_.view(later_[later_now_]).data, later_count_};

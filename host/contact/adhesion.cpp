@@ -134,7 +134,7 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
                             .saturation_pressure = view_of(adhesion.saturation_pressure),
                             .impulse = view_of(solution.impulse),
                             .velocity = view_of(std::as_const(velocity))};
-  const ContactAdhesionBody body = {
+  const ContactAdhesionOp body = {
       .in = views,
       .euler = options.integrator == AdhesionIntegrator::explicit_euler,
       .debond_gap_factor = options.debond_gap_factor,
@@ -172,7 +172,7 @@ void ContactSolver::evolve(const ContactArrays& arrays,
                             .impulse = view_of(std::span<const double>(solution.impulse)),
                             .velocity = view_of(std::span<const double>(solution.velocity)),
                             .velocity_offset = view_of(arrays.velocity_offset)};
-  const ContactAdhesionBody body = {
+  const ContactAdhesionOp body = {
       .in = views,
       .euler = options.integrator == AdhesionIntegrator::explicit_euler,
       .debond_gap_factor = options.debond_gap_factor,

@@ -62,24 +62,24 @@ class CpuExec : public HostCopies {
     std::copy_n(from.data, from.size, to.data);
   }
 
-  /// body(i) for i in [0, count), any order.
-  template <class Body>
-  void for_each(const char* label, std::int64_t count, const Body& body) const {
+  /// op(i) for i in [0, count), any order.
+  template <class Op>
+  void for_each(const char* label, std::int64_t count, const Op& op) const {
     const Clock clock(*this, label);
-    parallel_for(threads_for(count), count, body);
+    parallel_for(threads_for(count), count, op);
   }
-  /// body(0), by a single thread.
-  template <class Body>
-  void once(const char* label, const Body& body) const {
+  /// op(0), by a single thread.
+  template <class Op>
+  void once(const char* label, const Op& op) const {
     const Clock clock(*this, label);
-    body(0);
+    op(0);
   }
-  /// body.run(begin, end) over runs of [0, count), any order.
-  template <class Body>
-  void for_runs(const char* label, std::int64_t count, const Body& body) const {
+  /// op.run(begin, end) over runs of [0, count), any order.
+  template <class Op>
+  void for_runs(const char* label, std::int64_t count, const Op& op) const {
     const Clock clock(*this, label);
     parallel_for(threads_for(count), parts_of(count, run_length), [&](std::int64_t run) {
-      body.template run<run_length>(run * run_length, std::min((run + 1) * run_length, count));
+      op.template run<run_length>(run * run_length, std::min((run + 1) * run_length, count));
     });
   }
   /// stage(begin, end) for parts of [0, count) of at most task_length indices, any order.
@@ -89,26 +89,26 @@ class CpuExec : public HostCopies {
     for_tasks(count,
               [&](std::int64_t, std::int64_t begin, std::int64_t end) { stage(begin, end); });
   }
-  /// Calls body(segment, local, item) for every item of every segment: offsets[segment] + local =
+  /// Calls op(segment, local, item) for every item of every segment: offsets[segment] + local =
   /// item. Items from `capacity` on are left out.
-  template <class Body>
+  template <class Op>
   void for_each_item(const char* label,
                      View<const std::int64_t> offsets,
                      std::int64_t capacity,
-                     const Body& body) const {
+                     const Op& op) const {
     for_each_span(
         label, offsets, capacity,
         [&](std::int64_t segment, std::int64_t first, std::int64_t past, std::int64_t item) {
-          for (; first < past; ++first, ++item) body(segment, first, item);
+          for (; first < past; ++first, ++item) op(segment, first, item);
         });
   }
-  /// Calls body(segment, first, past, item) for stretches of successive items of a segment, local
+  /// Calls op(segment, first, past, item) for stretches of successive items of a segment, local
   /// numbers [first, past): offsets[segment] + first = item.
-  template <class Body>
+  template <class Op>
   void for_each_span(const char* label,
                      View<const std::int64_t> offsets,
                      std::int64_t capacity,
-                     const Body& body) const {
+                     const Op& op) const {
     const Clock clock(*this, label);
     const std::int64_t segments = offsets.size - 1;
     const std::int64_t items = std::min(offsets[segments], capacity);
@@ -120,33 +120,32 @@ class CpuExec : public HostCopies {
           std::upper_bound(offsets.data, offsets.data + offsets.size, item) - offsets.data - 1;
       for (; item < end; ++segment) {
         const std::int64_t begin = offsets[segment], past = std::min(offsets[segment + 1], end);
-        if (item < past) body(segment, item - begin, past - begin, item);
+        if (item < past) op(segment, item - begin, past - begin, item);
         item = past;
       }
     });
   }
 
-  /// Sum of body(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
-  template <class Sum, class Body>
-  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
+  /// Sum of op(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
+  template <class Sum, class Op>
+  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Op& op) {
     return add_runs<Sum>(label, first, last, [&](std::int64_t begin, std::int64_t end) {
       Sum sum{};
-      for (std::int64_t i = begin; i < end; ++i) sum += body(i);
+      for (std::int64_t i = begin; i < end; ++i) sum += op(i);
       return sum;
     });
   }
   /// As sum(), into executor memory.
-  template <class Sum, class Body>
-  void sum_to(
-      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
-    *out = sum<Sum>(label, first, last, body);
+  template <class Sum, class Op>
+  void sum_to(const char* label, std::int64_t first, std::int64_t last, const Op& op, Sum* out) {
+    *out = sum<Sum>(label, first, last, op);
   }
-  /// The same of body.run(begin, end) over runs of at most 64 indices.
-  template <class Sum, class Body>
+  /// The same of op.run(begin, end) over runs of at most 64 indices.
+  template <class Sum, class Op>
   void sum_runs_to(
-      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+      const char* label, std::int64_t first, std::int64_t last, const Op& op, Sum* out) {
     *out = add_runs<Sum>(label, first, last, [&](std::int64_t begin, std::int64_t end) {
-      return body.template run<run_length>(begin, end);
+      return op.template run<run_length>(begin, end);
     });
   }
   /// Replaces values[i] by the sum of the values before it. The last entry becomes the total; its
@@ -160,23 +159,23 @@ class CpuExec : public HostCopies {
       sum += value;
     }
   }
-  /// Sums body(i) for i in [0, count), and calls body.finish(total, k) for k in [0, sum_group). The
+  /// Sums op(i) for i in [0, count), and calls op.finish(total, k) for k in [0, sum_group). The
   /// sums before each i are not stored.
-  template <class Body>
-  void grouped_scan(const char* label, std::int64_t count, const Body& body, const GroupedSums&) {
+  template <class Op>
+  void grouped_scan(const char* label, std::int64_t count, const Op& op, const GroupedSums&) {
     const Clock clock(*this, label);
     std::int64_t total = 0;
-    for (std::int64_t i = 0; i < count; ++i) total += body(i);
-    for (int k = 0; k < sum_group; ++k) body.finish(total, k);
+    for (std::int64_t i = 0; i < count; ++i) total += op(i);
+    for (int k = 0; k < sum_group; ++k) op.finish(total, k);
   }
 
-  /// Replaces the list by what body(i, emit) appends for i in [0, count), in order of i:
+  /// Replaces the list by what op(i, emit) appends for i in [0, count), in order of i:
   /// emit(value) appends one, emit.tally(n) adds n to the list's tally.
   /// @throws TooManyPairs  before memory is taken for more than `most` values
-  template <class Body, class T>
+  template <class Op, class T>
   void append(const char* label,
               std::int64_t count,
-              const Body& body,
+              const Op& op,
               HostList<T>& list,
               std::int64_t most = unlimited) const {
     const Clock clock(*this, label);
@@ -188,7 +187,7 @@ class CpuExec : public HostCopies {
       auto& part = list.parts_[static_cast<std::size_t>(task)];
       part.values.clear();
       part.tallied = 0;
-      const Body own = body;
+      const Op own = op;
       for (std::int64_t i = begin; i < end; ++i) {
         own(i, part);
         check_count(static_cast<std::int64_t>(part.values.size()), most);
@@ -210,13 +209,13 @@ class CpuExec : public HostCopies {
       std::copy(part.values.begin(), part.values.end(), to + part.first);
     });
   }
-  /// Replaces the list by body(i) for i in [0, count).
-  template <class Body, class T>
-  void fill(const char* label, std::int64_t count, const Body& body, HostList<T>& list) const {
+  /// Replaces the list by op(i) for i in [0, count).
+  template <class Op, class T>
+  void fill(const char* label, std::int64_t count, const Op& op, HostList<T>& list) const {
     list.clear();
     list.set_size(count);
     const View<T> values = list.values();
-    for_each(label, count, [&](std::int64_t i) { values[i] = body(i); });
+    for_each(label, count, [&](std::int64_t i) { values[i] = op(i); });
   }
 
   /// Copies the first candidate_count[0] pairs that are not rejected, in order, and counts them.

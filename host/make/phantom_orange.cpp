@@ -21,7 +21,7 @@ constexpr double seed_level = 1.0;
 constexpr Point3 seed_middle{0.30, 0, 0};  // of each segment: outwards, around, along k
 constexpr Point3 seed_radii{0.035, 0.03, 0.09};
 
-/// @param p  in radii of the orange, from its centre
+/// @param p  in radii of the orange, from its center
 double orange_at(const Point3& p) {
   const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
   if (square > rind_start) {

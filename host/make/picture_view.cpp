@@ -53,7 +53,7 @@ Point3 PictureView::ray(double x, double y) const {
 ShadowMap::ShadowMap(const SurfaceSoup& soup, const Point3& light) : light_(light) {
   right_ = unit(cross(light, std::abs(light[0]) < 0.9 ? Point3{1, 0, 0} : Point3{0, 1, 0}));
   down_ = cross(light_, right_);
-  centre_ = times(0.5, plus(soup.low, soup.high));
+  center_ = times(0.5, plus(soup.low, soup.high));
   const double radius = 0.5 * norm(minus(soup.high, soup.low));
   scale_ = radius > 0 ? 0.5 * shadow_samples / (1.02 * radius) : 1;
   std::vector<PicturePoint> points;
@@ -63,7 +63,7 @@ ShadowMap::ShadowMap(const SurfaceSoup& soup, const Point3& light) : light_(ligh
 }
 
 PicturePoint ShadowMap::project(const Point3& world) const {
-  const Point3 offset = minus(world, centre_);
+  const Point3 offset = minus(world, center_);
   return {0.5 * shadow_samples + scale_ * dot(offset, right_),
           0.5 * shadow_samples + scale_ * dot(offset, down_), scale_ * dot(offset, light_), true};
 }

@@ -41,7 +41,7 @@ class ShadowMap {
  private:
   PicturePoint project(const Point3& world) const;
 
-  Point3 light_, right_, down_, centre_;
+  Point3 light_, right_, down_, center_;
   double scale_ = 0;  ///< samples per unit of length
   DepthBuffer buffer_;
 };

@@ -16,7 +16,7 @@
 
 namespace tetwarp {
 namespace {
-/// Shorter edges of cells are small. The number of voxels' centres in a tetrahedron of larger ones
+/// Shorter edges of cells are small. The number of voxels' centers in a tetrahedron of larger ones
 /// differs from its volume by a fifth at most.
 constexpr double least_edge = 16;  // [voxel]
 

@@ -20,7 +20,7 @@ struct ImageLattice {
 Region foreground_box(const std::string& place, const ImageGeometry& image);
 
 /// Cells along the axes of the grid that cover the box of the foreground, half a voxel beyond its
-/// outermost centres. Kept are the tetrahedra that own a voxel of the foreground, or of small
+/// outermost centers. Kept are the tetrahedra that own a voxel of the foreground, or of small
 /// cells those that share the box of one: so every voxel of the foreground has an owner, or is
 /// covered whole.
 /// @param body_place  of the body, for messages

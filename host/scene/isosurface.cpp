@@ -32,7 +32,7 @@ struct Sampling {
 };
 
 /// The samples of an image minus the threshold, interpolated linearly along each axis; negative
-/// more than half a voxel beyond the outermost centres.
+/// more than half a voxel beyond the outermost centers.
 class ImageLevel {
  public:
   ImageLevel(const ImageGeometry& image, const Region& box) : box_(box) {
@@ -56,7 +56,7 @@ class ImageLevel {
     }
   }
 
-  /// Whether a position is at most half a voxel beyond the outermost centres.
+  /// Whether a position is at most half a voxel beyond the outermost centers.
   bool contains(const Point3& index) const {
     for (std::size_t d = 0; d < 3; ++d) {
       if (index[d] < low_[d] || index[d] > high_[d]) return false;

@@ -8,9 +8,9 @@
 
 namespace tetwarp {
 
-/// The isosurface at the threshold, by marching tetrahedra on the voxels' centres: closed, also
+/// The isosurface at the threshold, by marching tetrahedra on the voxels' centers: closed, also
 /// where the foreground reaches the border of the image: there it ends half a voxel beyond the
-/// outermost centres. Points keep 0.02 of a lattice edge from voxels' centres, so that no triangle
+/// outermost centers. Points keep 0.02 of a lattice edge from voxels' centers, so that no triangle
 /// is without area.
 /// @param place  of the volume, for messages
 /// @throws std::invalid_argument  no foreground, too many triangles

@@ -44,7 +44,7 @@ class Marks {
   }
   void operator()(const SphereSelection& sphere) {
     mark_where([&](const Point3& x) {
-      return norm(minus(x, sphere.centre)) <= sphere.radius + rounding_;
+      return norm(minus(x, sphere.center)) <= sphere.radius + rounding_;
     });
   }
   void operator()(const HalfSpaceSelection& half) {

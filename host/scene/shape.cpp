@@ -21,7 +21,7 @@ Overloaded(Calls...) -> Overloaded<Calls...>;
 double box_level(const Point3& half, const Point3& x) {
   return std::max({std::abs(x[0]) - half[0], std::abs(x[1]) - half[1], std::abs(x[2]) - half[2]});
 }
-/// Level of an arc: distance from its centre line minus the radius of the tube.
+/// Level of an arc: distance from its center line minus the radius of the tube.
 class ArcLevel {
  public:
   explicit ArcLevel(const ArcShape& arc)
@@ -55,10 +55,10 @@ Bounds box_bounds(const Point3& half) {
 Bounds arc_bounds(const ArcShape& arc) {
   Bounds bounds;
   const auto include = [&](double angle) {
-    const Point3 centre{arc.radius * std::cos(angle), arc.radius * std::sin(angle), 0};
+    const Point3 center{arc.radius * std::cos(angle), arc.radius * std::sin(angle), 0};
     const Point3 reach{arc.tube, arc.tube, arc.tube};
-    bounds.include(minus(centre, reach));
-    bounds.include(plus(centre, reach));
+    bounds.include(minus(center, reach));
+    bounds.include(plus(center, reach));
   };
   include(arc.angles[0]);
   include(arc.angles[1]);

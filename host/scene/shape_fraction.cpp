@@ -69,19 +69,19 @@ class Divider {
 
   /// @param divisions  of the tetrahedron that remain
   double fraction(const Corners& x, int divisions) const {
-    const Point3 centre = times(0.25, plus(plus(x[0], x[1]), plus(x[2], x[3])));
+    const Point3 center = times(0.25, plus(plus(x[0], x[1]), plus(x[2], x[3])));
     double reach = 0;
     for (const Point3& corner : x) {
-      const Point3 from_centre = minus(corner, centre);
-      reach = std::max(reach, dot(from_centre, from_centre));
+      const Point3 from_center = minus(corner, center);
+      reach = std::max(reach, dot(from_center, from_center));
     }
     reach = std::sqrt(reach);
-    const double level = level_(centre);
+    const double level = level_(center);
     if (level >= slope_ * reach) return 0;
     if (level <= -slope_ * reach) return 1;
     if (divisions <= 0) {
       std::array<double, 4> corner{level_(x[0]), level_(x[1]), level_(x[2]), level_(x[3])};
-      // Linear interpolation of a quadratic function is off by 4/5 of its error at the centre on
+      // Linear interpolation of a quadratic function is off by 4/5 of its error at the center on
       // average over a tetrahedron.
       const double mean = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
       for (double& value : corner) value -= 0.8 * (mean - level);

@@ -10,7 +10,7 @@
 namespace tetwarp {
 
 /// Per voxel of a region of the volume's grid the lowest-numbered tetrahedron whose closed shape
-/// contains the voxel's centre, -1: none. Positions are rounded to 2^-20 voxel; then the decision
+/// contains the voxel's center, -1: none. Positions are rounded to 2^-20 voxel; then the decision
 /// is exact, by the rule of Warper, which makes it.
 std::vector<std::int32_t> voxel_owners(const Volume& volume,
                                        const Region& region,

@@ -24,7 +24,7 @@ struct LatticeOptions {
 };
 
 /// A mesh of cubic cells, along the axes of the grid, that covers the bounding box of the
-/// foreground (half a voxel beyond its outermost centres). Cells without a foreground voxel are
+/// foreground (half a voxel beyond its outermost centers). Cells without a foreground voxel are
 /// left out. Each cell is divided into five tetrahedra of positive volume, mirrored from cell to
 /// cell so that the triangles of shared faces match.
 /// @throws std::invalid_argument when there is no foreground or `cells` is less than 1
@@ -68,12 +68,12 @@ TETWARP_EXPORT Volume make_phantom(const std::array<std::int64_t, 3>& dims = {25
 inline constexpr double orange_phantom_threshold = 0.05;
 
 /// An orange: an ellipsoid that fills 95 % of the grid along each axis, float32 from 0 to 1. With r
-/// from 0 at the centre to 1 on the surface, flesh (r^2 <= 0.85) is 1 - r^2, darker in the walls
+/// from 0 at the center to 1 on the surface, flesh (r^2 <= 0.85) is 1 - r^2, darker in the walls
 /// between its ten segments and brighter in its seeds, always at least 0.15; rind falls from 0.14
 /// to 0.05 at r = 1 and, outside, on to 0. So the isosurface at orange_phantom_threshold is the
 /// ellipsoid.
 /// @param dims     voxels
-/// @param spacing  of voxels; the first one is centred at the origin
+/// @param spacing  of voxels; the first one is centered at the origin
 /// @throws std::invalid_argument as check_grid()
 TETWARP_EXPORT Volume make_orange_phantom(const std::array<std::int64_t, 3>& dims,
                                           const Point3& spacing);
@@ -85,7 +85,7 @@ inline constexpr double fish_phantom_threshold = 45;
 /// fins 90, flesh 128, spine and ribs 220, 0 outside; edges are soft. Tail and fins reach the
 /// margins, 2 % of the grid along each axis.
 /// @param dims     voxels
-/// @param spacing  of voxels; the first one is centred at the origin
+/// @param spacing  of voxels; the first one is centered at the origin
 /// @throws std::invalid_argument as check_grid()
 TETWARP_EXPORT Volume make_fish_phantom(const std::array<std::int64_t, 3>& dims,
                                         const Point3& spacing);

@@ -25,7 +25,7 @@ struct Body {
   Geometry geometry = {};
   Pose pose = {};
   Point3 velocity{0, 0, 0};          ///< at the start [m/s]
-  Point3 angular_velocity{0, 0, 0};  ///< at the start, about the centre of mass [rad/s]
+  Point3 angular_velocity{0, 0, 0};  ///< at the start, about the center of mass [rad/s]
   bool collide = true;
   std::optional<bool> self = {};  ///< touches itself; without: cloth does, others do not
   std::optional<SurfaceContact> contact = {};
@@ -50,7 +50,7 @@ struct PlaneObstacle {
   Point3 normal{0, 0, 1}, point{0, 0, 0};
 };
 struct SphereObstacle {
-  Point3 centre{};
+  Point3 center{};
   double radius = 1;
 };
 struct CapsuleObstacle {

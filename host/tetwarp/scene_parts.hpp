@@ -27,7 +27,7 @@ struct Surface {
 };
 
 // ---- geometry -----------------------------------------------------------------
-// Shapes are centred on the body's origin.
+// Shapes are centered on the body's origin.
 struct BoxShape {
   Point3 half{1, 1, 1};  ///< half edges [m]
 };
@@ -43,7 +43,7 @@ struct CylinderShape {
   double length = 1;  ///< along z [m]
 };
 struct TorusShape {
-  double radius = 1;  ///< of the centre line, around z [m]
+  double radius = 1;  ///< of the center line, around z [m]
   double tube = 0.1;  ///< radius of the tube [m]
 };
 /// A part of a torus with hemispheres at its ends.
@@ -135,7 +135,7 @@ struct Cloth {
 struct RigidMass {
   double density = 1000;                              ///< [kg/m^3], > 0
   std::optional<double> mass = {};                    ///< [kg], > 0; needs `inertia`
-  std::optional<std::array<double, 6>> inertia = {};  ///< xx yy zz xy yz xz about the centre of
+  std::optional<std::array<double, 6>> inertia = {};  ///< xx yy zz xy yz xz about the center of
                                                       ///< mass, body axes [kg m^2]
 };
 
@@ -167,7 +167,7 @@ struct BoxSelection {
   Point3 low{}, high{};
 };
 struct SphereSelection {
-  Point3 centre{};
+  Point3 center{};
   double radius = 0;
 };
 struct HalfSpaceSelection {

@@ -84,9 +84,9 @@ struct StepSeconds {
 
 /// One body at the end of a step. Forces are impulses over the step divided by time_step.
 struct BodyRecord {
-  Point3 centre{};            ///< of mass [m]
-  Point3 velocity{};          ///< of the centre of mass [m/s]
-  Point3 angular_momentum{};  ///< about the centre of mass [kg m^2/s]
+  Point3 center{};            ///< of mass [m]
+  Point3 velocity{};          ///< of the center of mass [m/s]
+  Point3 angular_momentum{};  ///< about the center of mass [kg m^2/s]
   Point3 contact_force{}, support_force{}, handle_force{}, coupling_force{}, load_force{};  ///< [N]
   std::array<double, 4> rotation{1, 0, 0, 0};  ///< rigid: geometry frame to world, w >= 0
   Point3 angular_velocity{};                   ///< rigid [rad/s]

@@ -14,9 +14,9 @@
 namespace tetwarp {
 
 /// The isosurface at a value of a volume of one component, by marching tetrahedra on the voxels'
-/// centres: closed, with triangles counter-clockwise from the side of the lower samples. Where the
+/// centers: closed, with triangles counter-clockwise from the side of the lower samples. Where the
 /// foreground (samples >= value) reaches the border of the volume, the surface ends half a voxel
-/// beyond the outermost centres.
+/// beyond the outermost centers.
 /// @param triangles  about how many: the volume is sampled on a coarser lattice; nothing: as many
 /// as
 ///                   there are

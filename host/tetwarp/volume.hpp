@@ -1,5 +1,5 @@
 /// @file volume.hpp
-/// Dense volumes: samples of a numeric type on a regular grid of voxel centres in world space.
+/// Dense volumes: samples of a numeric type on a regular grid of voxel centers in world space.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -23,18 +23,18 @@ TETWARP_EXPORT std::size_t size_of(PixelType type);
 /// True for the eight integer types.
 TETWARP_EXPORT bool is_integer(PixelType type);
 
-/// A regular grid. The centre of voxel (i, j, k) is at origin + direction * (spacing o (i, j, k))
+/// A regular grid. The center of voxel (i, j, k) is at origin + direction * (spacing o (i, j, k))
 /// [world]; o multiplies component by component.
 struct TETWARP_EXPORT Grid {
   std::array<std::int64_t, 3> dims{0, 0, 0};  ///< voxels along i, j, k
-  Point3 origin{0, 0, 0};                     ///< centre of voxel (0, 0, 0) [world]
-  Point3 spacing{1, 1, 1};                    ///< distance of centres [world], > 0
+  Point3 origin{0, 0, 0};                     ///< center of voxel (0, 0, 0) [world]
+  Point3 spacing{1, 1, 1};                    ///< distance of centers [world], > 0
   std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row major, invertible
 
   /// Product of dims.
   std::int64_t voxel_count() const { return dims[0] * dims[1] * dims[2]; }
 
-  /// World position of index-space position `index` (voxel centres are integers).
+  /// World position of index-space position `index` (voxel centers are integers).
   Point3 world_of(const Point3& index) const;
 
   bool operator==(const Grid&) const = default;

@@ -1,6 +1,6 @@
 /// @file warp.hpp
 /// Deform volumes by a mesh: every output voxel gets the sample of the source at the rest position
-/// of the material point that the deformed mesh has moved to the voxel's centre.
+/// of the material point that the deformed mesh has moved to the voxel's center.
 ///
 /// Source: J. Gascon et al., "Fast Deformation of Volume Data Using Tetrahedral Mesh
 /// Rasterization", SCA 2013.
@@ -164,7 +164,7 @@ struct WarpResult {
 /// Warps volumes step by step. Allocates memory once; on cuda the sources stay on the device.
 ///
 /// The owner of a voxel is the tetrahedron of the lowest number whose closed deformed shape
-/// contains the voxel's centre. Node positions are rounded once, to 2^-20 voxel; owners are then
+/// contains the voxel's center. Node positions are rounded once, to 2^-20 voxel; owners are then
 /// decided in exact integers, so that they are the same on every back end and for every number of
 /// threads. Not safe for concurrent calls.
 class TETWARP_EXPORT Warper {

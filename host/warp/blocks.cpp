@@ -123,7 +123,7 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
   const std::int64_t tet_count = std::ssize(mesh.tets);
   const View<const Node> rest{geometry.rest.data(), std::ssize(geometry.rest)};
   const std::int32_t* const ids = mesh.tets.front().data();
-  TetSetupBody body{};
+  TetSetupOp body{};
   body.tets = {ids, 4 * tet_count};
   body.deformed = {nodes.data(), std::ssize(nodes)};
   body.rest = rest;

@@ -17,7 +17,7 @@ class CellRaster {
   /// @param counts       numbers of cells by class, zeros; null: the executor clears its own
   template <class T>
   void run(Exec& exec,
-           const CellWorkBody<T>& work,
+           const CellWorkOp<T>& work,
            bool /*has_classes*/,
            CellListCounts* /*counts*/,
            const ProgressPart& progress) {

@@ -15,7 +15,7 @@ class CounterTotals {
   /// The executor must outlive the object.
   CounterTotals(Exec& exec, std::int64_t cells)
       : exec_(exec),
-        parts_((cells + CoveredTotalBody::covered_cells - 1) / CoveredTotalBody::covered_cells) {
+        parts_((cells + CoveredTotalOp::covered_cells - 1) / CoveredTotalOp::covered_cells) {
     within_.reserve(parts_ + 1);
     groups_.reserve(group_count(parts_) + 1);
   }
@@ -25,13 +25,12 @@ class CounterTotals {
   void run(const CounterMemory* counters,
            View<const std::uint16_t> cell_covered,
            StepCounters* totals) {
-    const CounterTotalBody total{counters,
-                                 {reinterpret_cast<std::int64_t*>(totals), counter_words}};
+    const CounterTotalOp total{counters, {reinterpret_cast<std::int64_t*>(totals), counter_words}};
     if (cell_covered.size == 0) {
       exec_.for_each("warp/raster", counter_words, total);
     } else {
       exec_.grouped_scan(
-          "warp/raster", parts_, CoveredTotalBody{cell_covered, total},
+          "warp/raster", parts_, CoveredTotalOp{cell_covered, total},
           {within_.view(parts_ + 1), groups_.view(group_count(parts_) + 1), parts_ + 1});
     }
   }

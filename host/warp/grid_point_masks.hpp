@@ -33,7 +33,7 @@ class GridPointMasks {
   MaskVerdict<Offsets> run(View<const TetSetup> setups, const Offsets& pair_offsets) {
     const std::int64_t tets = setups.size;
     const View<std::int64_t> counts = counts_.view(tets + 1);
-    const CornerCountBody<Offsets> body{setups, pair_offsets, counts};
+    const CornerCountOp<Offsets> body{setups, pair_offsets, counts};
     Offsets offsets;
     if constexpr (Exec::reads_are_free) {
       exec_.for_each("warp/mask", tets, body);

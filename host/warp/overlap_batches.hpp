@@ -11,7 +11,7 @@ namespace tetwarp {
 
 /// Pairs of tetrahedron and cell before a voxel: those of the layers of cells before its own, and a
 /// share of its layer's. The time of the stage is about proportional to it.
-inline double pairs_before(const VoxelOverlapBody& body, std::int64_t voxel) {
+inline double pairs_before(const VoxelOverlapOp& body, std::int64_t voxel) {
   const OutputFrame& frame = body.frame;
   const std::int64_t layer_voxels = std::int64_t{cell_edge} * frame.end[0] * frame.end[1];
   const std::int64_t layer_cells = std::int64_t{frame.cells[0]} * frame.cells[1];
@@ -30,7 +30,7 @@ inline double pairs_before(const VoxelOverlapBody& body, std::int64_t voxel) {
 /// only queued and reports once.
 /// @throws Cancelled when the progress callback returns false
 template <class Exec>
-void overlap_in_batches(Exec& exec, VoxelOverlapBody body, const ProgressPart& progress) {
+void overlap_in_batches(Exec& exec, VoxelOverlapOp body, const ProgressPart& progress) {
   constexpr std::int64_t batch = std::int64_t{1} << 17;  // voxels: tenths of a second
   const std::int64_t voxels = body.frame.voxel_count();
   if (Exec::reads_are_free && progress.is_requested()) {

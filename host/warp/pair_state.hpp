@@ -54,9 +54,8 @@ class PairState {
     if (steps == 1) return touched();
     touched_in_two_.reserve(cell_count());
     const View<std::uint8_t> both = touched_in_two_.view(cell_count());
-    exec_.for_each(
-        "warp/cull", cell_count(),
-        CellEverTouchedBody{touched(), touched_[1 - now_].const_view(cell_count()), both});
+    exec_.for_each("warp/cull", cell_count(),
+                   CellEverTouchedOp{touched(), touched_[1 - now_].const_view(cell_count()), both});
     return both;
   }
 
@@ -94,7 +93,7 @@ class PairState {
     check_pair_count(pair_total_);
   }
 
-  TetSetupBody setup_body(View<std::int64_t> pair_counts) const {
+  TetSetupOp setup_body(View<std::int64_t> pair_counts) const {
     return {mesh_.tets,      nodes(),
             mesh_.rest,      mesh_.orientation,
             geometry_.frame, setups_.view(tet_count()),

@@ -94,7 +94,7 @@ class DevicePairs : public PairState<Exec> {
   void begin(View<const double> positions, bool has_before) {
     const auto& origin = geometry_.frame.origin;
     const std::int64_t kept = is_update_ ? kept_words : 0;
-    const StepBeginBody body{
+    const StepBeginOp body{
         {geometry_.output_index,
          {origin[0], origin[1], origin[2]},
          positions,
@@ -111,19 +111,19 @@ class DevicePairs : public PairState<Exec> {
     const std::int64_t tets = this->tet_count();
     const GroupedSums sums = candidate_sums();
     const auto body = [&]<bool widens>(std::bool_constant<widens>) {
-      return TetCountBody<widens>{Base::setup_body(sums.within),
-                                  node_moved_.const_view(has_before ? mesh_.node_count() : 0),
-                                  moved_.view(tets),
-                                  is_update_,
-                                  {this->counters()->spread.moved, SpreadCounts::places},
-                                  {&this->counters()->work.candidates, 1}};
+      return TetCountOp<widens>{Base::setup_body(sums.within),
+                                node_moved_.const_view(has_before ? mesh_.node_count() : 0),
+                                moved_.view(tets),
+                                is_update_,
+                                {this->counters()->spread.moved, SpreadCounts::places},
+                                {&this->counters()->work.candidates, 1}};
     };
     if (this->keeps_totals()) {
       exec_.grouped_scan("warp/setup", tets, body(std::true_type{}), sums);
     } else if (mesh_.hexes.nodes.size > 0) {
       exec_.grouped_scan("warp/setup", tets, body(std::false_type{}), sums);
     } else {
-      exec_.grouped_scan("warp/setup", tets, TetLanesBody{body(std::false_type{})}, sums);
+      exec_.grouped_scan("warp/setup", tets, TetLanesOp{body(std::false_type{})}, sums);
     }
   }
 
@@ -147,7 +147,7 @@ class DevicePairs : public PairState<Exec> {
                                   staying_.view(is_update_ ? cells : 0)};
     const auto list_by = [&]<class Verdict>(const Verdict& verdict) {
       cell_list(exec_, candidate_sums(),
-                CellCullBody<Verdict>{this->setups(), verdict, switches, geometry_.frame, {}},
+                CellCullOp<Verdict>{this->setups(), verdict, switches, geometry_.frame, {}},
                 {candidates_.view(now.size), places_.view(now.size), cell_counts_.view(cells),
                  view(cell_sums_, cells), placed_.view(now.size)},
                 {{},

@@ -61,7 +61,7 @@ class HostPairs : public PairState<Exec> {
   /// Computes the pairs of all tetrahedra.
   void make() {
     exec_.zero("warp/setup", View<MeshCounters>{&this->counters()->mesh, 1});
-    const TetSetupBody setup = setup_body();
+    const TetSetupOp setup = setup_body();
     tet_setup(exec_, setup);
     if (this->keeps_totals()) tet_widen(exec_, setup, {});
     sum_up(setup, {});
@@ -73,7 +73,7 @@ class HostPairs : public PairState<Exec> {
   /// @returns false when so many have moved that make() is as fast; nothing is done then
   bool update() {
     const std::int64_t tets = this->tet_count(), cells = this->cell_count();
-    const TetSetupBody setup = setup_body();
+    const TetSetupOp setup = setup_body();
     reserve_update();
     tet_moved(exec_, mesh_.tets, this->nodes_before(), this->nodes(), this->setups(),
               node_moved_.view(mesh_.node_count()), moved_.view(tets),
@@ -100,9 +100,9 @@ class HostPairs : public PairState<Exec> {
   }
 
   /// Turns the counts of a setup into offsets, and takes their totals.
-  void sum_up(const TetSetupBody& setup, View<const std::int64_t> moved_offsets) {
+  void sum_up(const TetSetupOp& setup, View<const std::int64_t> moved_offsets) {
     exec_.exclusive_scan("warp/setup", setup.pair_counts);
-    exec_.for_each("warp/setup", 1, TotalsBody{moved_offsets, setup.pair_counts, this->counters()});
+    exec_.for_each("warp/setup", 1, TotalsOp{moved_offsets, setup.pair_counts, this->counters()});
     this->take_totals(this->read_counters());
   }
 
@@ -140,7 +140,7 @@ class HostPairs : public PairState<Exec> {
     moved_offsets_.reserve(this->tet_count() + 1);
   }
 
-  TetSetupBody setup_body() const {
+  TetSetupOp setup_body() const {
     return Base::setup_body(pair_offsets_.view(this->tet_count() + 1));
   }
   View<const std::int64_t> last_of(const Buffer<std::int64_t>& offsets) const {

@@ -38,7 +38,7 @@ class WarpRoundings {
     const View<RoundingChange> changes = buffers_[s].view(sizes_[s]);
     const int components = plan_.sources[s].components;
     const std::int64_t cells = changes.size / components;
-    exec_.for_each("warp/raster", cells, RoundingClearBody{cell_work, components, changes});
+    exec_.for_each("warp/raster", cells, RoundingClearOp{cell_work, components, changes});
     const auto& dims = plan_.output_grid.dims;
     return {geometry_.frame, {dims[0], dims[1]}, components, volume, changes};
   }
@@ -49,8 +49,8 @@ class WarpRoundings {
     const View<RoundingChange> sums = {sums_.view(firsts_.back()).data + firsts_[s], components};
     exec_.zero("warp/raster", sums);
     const std::int64_t cells = sizes_[s] / components;
-    exec_.for_each("warp/raster", (cells + RoundingSumBody::cells - 1) / RoundingSumBody::cells,
-                   RoundingSumBody{buffers_[s].const_view(sizes_[s]), components, sums});
+    exec_.for_each("warp/raster", (cells + RoundingSumOp::cells - 1) / RoundingSumOp::cells,
+                   RoundingSumOp{buffers_[s].const_view(sizes_[s]), components, sums});
   }
 
   /// Copies the sums to the host, after all preceding stages.

@@ -82,7 +82,7 @@ TETWARP_HD std::int64_t counter_word(const CounterMemory& memory, std::int64_t k
 }
 
 /// One index = one word of the result.
-struct CounterTotalBody {
+struct CounterTotalOp {
   const CounterMemory* memory;
   View<std::int64_t> totals;  ///< out, shape [counter_words]; may be page-locked memory of the host
 
@@ -90,10 +90,10 @@ struct CounterTotalBody {
 };
 
 /// The same after a sum over all cells: one index = the covered voxels of covered_cells cells.
-struct CoveredTotalBody {
+struct CoveredTotalOp {
   static constexpr std::int64_t covered_cells = 256;
   View<const std::uint16_t> cell_covered;
-  CounterTotalBody total;
+  CounterTotalOp total;
 
   TETWARP_HD std::int64_t operator()(std::int64_t part) const {
     const std::int64_t end = min_of((part + 1) * covered_cells, cell_covered.size);
@@ -111,7 +111,7 @@ struct CoveredTotalBody {
 };
 
 /// Copies the totals of two scans to the counters, so that the host reads memory once. One index.
-struct TotalsBody {
+struct TotalsOp {
   View<const std::int64_t> moved_offsets;  ///< size 0: not an update
   View<const std::int64_t> pair_offsets;
   CounterMemory* counters;

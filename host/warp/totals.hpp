@@ -68,7 +68,7 @@ class WarpTotals {
     offsets.reserve(pairs.tet_count() + 1);
     exec_.for_each(
         "warp/setup", pairs.tet_count(),
-        TetSliceCountBody{pairs.tets(), pairs.rest(), frame, offsets.view(pairs.tet_count())});
+        TetSliceCountOp{pairs.tets(), pairs.rest(), frame, offsets.view(pairs.tet_count())});
     exec_.exclusive_scan("warp/setup", offsets.view(pairs.tet_count() + 1));
     std::int64_t slices = 0;
     exec_.get(View<const std::int64_t>{offsets.const_view(0).data + pairs.tet_count(), 1}, &slices);
@@ -78,8 +78,8 @@ class WarpTotals {
       masses.reserve(slices * components);
       total.reserve(components);
       exec_.for_each_item("warp/setup", offsets.const_view(pairs.tet_count() + 1), slices,
-                          TetSliceMassBody{pairs.tets(), pairs.rest(), frame, source, components,
-                                           masses.view(slices * components)});
+                          TetSliceMassOp{pairs.tets(), pairs.rest(), frame, source, components,
+                                         masses.view(slices * components)});
       sum({masses.view(0).data, PixelType::float64}, slices, components, total.view(components));
       exec_.get(total.const_view(components), totals.data());
     }

@@ -177,8 +177,8 @@ class WarpPipeline : public WarpBackend {
         pairs_.is_update() ? pairs_.touched() : View<const std::uint8_t>{};
     const View<std::int64_t> folded{&pairs_.counters()->mesh.folded, 1};
     const auto count = [&](View<const Node> nodes, const PairList& list, std::int64_t weight) {
-      const VoxelFoldBody body = {pairs_.tets(),   nodes,  list,  touched,
-                                  geometry_.frame, folded, weight};
+      const VoxelFoldOp body = {pairs_.tets(),   nodes,  list,  touched,
+                                geometry_.frame, folded, weight};
       exec_.for_each("warp/fold", geometry_.frame.voxel_count(), body);
     };
     if (pairs_.is_update()) count(pairs_.nodes_before(), pairs_.list_before(), -1);
@@ -214,7 +214,7 @@ class WarpPipeline : public WarpBackend {
       job.transforms = transforms_.transforms(s, pairs_.tet_count());
       job.outside_transform = transforms_.outside();
       job.reorientation = transforms_.reorientation(s);
-      const CellWorkBody<T> work = work_of_cells(s, job);
+      const CellWorkOp<T> work = work_of_cells(s, job);
       if (plan_.options.intensity == Intensity::conservative) {
         cell_work(exec_, work);
         overlap(s, work.job, part);
@@ -231,16 +231,16 @@ class WarpPipeline : public WarpBackend {
   /// Averages over the voxels' boxes; for the first source after a raster of mask and owners.
   template <class T>
   void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
-    VoxelOverlapBody body = {job.setups,
-                             job.tets,
-                             job.transforms,
-                             pairs_.list(),
-                             job.cell_work,
-                             job.frame,
-                             number_view(job.source.data),
-                             {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
-                             job.source.components,
-                             roundings_.begin(s, job.cell_work, number_view(job.volume))};
+    VoxelOverlapOp body = {job.setups,
+                           job.tets,
+                           job.transforms,
+                           pairs_.list(),
+                           job.cell_work,
+                           job.frame,
+                           number_view(job.source.data),
+                           {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
+                           job.source.components,
+                           roundings_.begin(s, job.cell_work, number_view(job.volume))};
     job.filter = Filter::nearest;
     job.transforms = {};
     constexpr double raster = 0.01;  // of the time of this source
@@ -251,8 +251,8 @@ class WarpPipeline : public WarpBackend {
 
   /// Finds the cells to keep and the cells to fill with one value; the others are sampled.
   template <class T>
-  CellWorkBody<T> work_of_cells(std::size_t s, const RasterJob<T>& job) {
-    CellWorkBody<T> body = {job, {}, stale_, {}, {}};
+  CellWorkOp<T> work_of_cells(std::size_t s, const RasterJob<T>& job) {
+    CellWorkOp<T> body = {job, {}, stale_, {}, {}};
     if (plan_.options.expert.skip.constant_cells && job.transforms.size == 0) {
       body.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
     }

@@ -32,7 +32,7 @@ ComponentMap component_map(
 /// The map of a displacement field that ITK reads; see ArrayHeader::is_itk_field. `path` is for
 /// messages.
 /// @param has_form   the header has a sform or a qform
-/// @param unit       millimetres of one unit of the header
+/// @param unit       millimeters of one unit of the header
 /// @throws IoError unless the field has three components of float32 or float64
 ComponentMap itk_field_map(const std::string& path,
                            PixelType type,

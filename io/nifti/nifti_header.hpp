@@ -97,7 +97,7 @@ int nifti_datatype_of(PixelType type);
 /// Seconds of one unit of the time axis; 1 where `xyzt_units` names none.
 double nifti_time_unit(std::int64_t xyzt_units);
 
-/// Millimetres of one unit of length, as ITK takes it; 1 where `xyzt_units` names none.
+/// Millimeters of one unit of length, as ITK takes it; 1 where `xyzt_units` names none.
 double nifti_length_unit(std::int64_t xyzt_units);
 
 }  // namespace tetwarp

@@ -14,13 +14,13 @@ namespace tetwarp {
 /// Bytes that are read, written or converted at a time.
 constexpr std::size_t nifti_part_bytes = std::size_t{1} << 20;
 
-/// Calls `body(voxel_in_grid, voxel_in_region, count)` for runs of at most `most` voxels, in the
+/// Calls `op(voxel_in_grid, voxel_in_region, count)` for runs of at most `most` voxels, in the
 /// order of the file, until it returns false. @returns false when it did
-template <class Body>
+template <class Op>
 bool for_each_run(const std::array<std::int64_t, 3>& dims,
                   const Region& region,
                   std::int64_t most,
-                  const Body& body) {
+                  const Op& op) {
   std::array<std::int64_t, 3> extent{};
   for (std::size_t axis = 0; axis < 3; ++axis) extent[axis] = region.end[axis] - region.begin[axis];
   // Whole rows follow each other in the file, and so do whole slices.
@@ -34,7 +34,7 @@ bool for_each_run(const std::array<std::int64_t, 3>& dims,
           ((region.begin[2] + k) * dims[1] + region.begin[1] + j) * dims[0] + region.begin[0];
       const std::int64_t in_region = (k * extent[1] + j) * extent[0];
       for (std::int64_t done = 0; done < run; done += most) {
-        if (!body(in_grid + done, in_region + done, std::min(most, run - done))) return false;
+        if (!op(in_grid + done, in_region + done, std::min(most, run - done))) return false;
       }
     }
   }

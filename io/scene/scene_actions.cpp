@@ -25,7 +25,7 @@ void read_obstacle_shape(const std::string& type,
     into.geometry = plane;
   } else if (type == "sphere") {
     SphereObstacle sphere;
-    sphere.centre = object.get("centre", "a point [x, y, z]").point();
+    sphere.center = object.get("centre", "a point [x, y, z]").point();
     sphere.radius = object.get("radius", "a number above 0 (m)").number();
     into.geometry = sphere;
   } else if (type == "capsule") {

@@ -37,7 +37,7 @@ struct ArrayHeader {
   int components = 1;
   std::optional<NiftiFacts> nifti = {};  ///< of the NIfTI file that the array comes from
   /// Of three components: a displacement, which a NIfTI file that is written holds as ITK's
-  /// transforms take it: in millimetres and along the axes in which ITK places the image. ITK turns
+  /// transforms take it: in millimeters and along the axes in which ITK places the image. ITK turns
   /// the positions of a header from RAS to LPS, unless the header has neither sform nor qform. Of a
   /// single axial slice, which ITK reads as a 2D image, the two components in the slice are
   /// written.

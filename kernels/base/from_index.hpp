@@ -8,12 +8,12 @@
 namespace tetwarp {
 
 /// Index 0 of the stage is index `first` of the body.
-template <class Body>
+template <class Op>
 struct FromIndex {
-  Body body;
+  Op op;
   std::int64_t first;
 
-  TETWARP_HD void operator()(std::int64_t i) const { body(first + i); }
+  TETWARP_HD void operator()(std::int64_t i) const { op(first + i); }
 };
 
 }  // namespace tetwarp

@@ -19,7 +19,7 @@
 
 namespace tetwarp {
 
-/// a * b, rounded once: never fused into a neighbouring addition.
+/// a * b, rounded once: never fused into a neighboring addition.
 TETWARP_HD double mul_rn(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dmul_rn(a, b);
@@ -30,7 +30,7 @@ TETWARP_HD double mul_rn(double a, double b) {
 #endif
 }
 
-/// a + b, rounded once: never fused with a neighbouring product.
+/// a + b, rounded once: never fused with a neighboring product.
 TETWARP_HD double add_rn(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dadd_rn(a, b);

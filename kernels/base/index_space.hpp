@@ -1,5 +1,5 @@
 /// @file index_space.hpp
-/// Index space of a grid: voxel centres have integer coordinates; node positions are rounded to
+/// Index space of a grid: voxel centers have integer coordinates; node positions are rounded to
 /// multiples of a quantum.
 #pragma once
 #include <cstdint>

@@ -22,7 +22,7 @@ struct ScalarEntries {
 
 struct RigidConstants {
   View<const double> mass, alpha;  ///< [rigid]
-  View<const double> inertia;      ///< [rigid][9] of RigidMidpointBody
+  View<const double> inertia;      ///< [rigid][9] of RigidMidpointOp
 };
 
 /// Contributions of elements, computed by the stages before.
@@ -108,7 +108,7 @@ TETWARP_HD void add_spring_block(const SpringConstants& spring,
 
 /// One index = one block on or above the diagonal. Writes it and its mirror image; any order.
 template <class Column>
-struct BlockAssembleBodyOf {
+struct BlockAssembleOpOf {
   SystemRows rows;
   ElementResults from;
   ScalarEntries scalars;
@@ -183,11 +183,11 @@ struct BlockAssembleBodyOf {
   }
 };
 
-using BlockAssembleBody = BlockAssembleBodyOf<Triple>;
+using BlockAssembleOp = BlockAssembleOpOf<Triple>;
 
 /// All blocks of the system.
 template <class Exec>
-void block_assemble(Exec& exec, const char* label, const BlockAssembleBody& body) {
+void block_assemble(Exec& exec, const char* label, const BlockAssembleOp& body) {
   exec.for_each(label, body.rows.upper.size, body);
 }
 

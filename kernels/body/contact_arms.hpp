@@ -57,7 +57,7 @@ class ArmList {
 template <class Point>
 struct ArmFinder {
   View<const Point> points;   ///< [vertices] what each is bound to
-  View<const double> centre;  ///< of frames, [frames][3]
+  View<const double> center;  ///< of frames, [frames][3]
   std::int32_t node_count;    ///< of the model, whose next blocks are those of the frames
 
   /// @param arms  out
@@ -90,7 +90,7 @@ struct ArmFinder {
     ContactArm& arm = arms.of(node_count + 2 * frame);
     arm.weight += weight;
     for (int i = 0; i < 3; ++i) {
-      arm.lever[i] += weight * (point[i] - centre[3 * std::int64_t{frame} + i]);
+      arm.lever[i] += weight * (point[i] - center[3 * std::int64_t{frame} + i]);
     }
   }
 };

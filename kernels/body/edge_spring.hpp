@@ -17,7 +17,7 @@ struct EdgePull {
 };
 
 /// One index = one edge. Writes its own entry; any order.
-struct EdgeSpringBody {
+struct EdgeSpringOp {
   View<const std::int32_t> node;       ///< [edges][2]
   View<const double> stiffness;        ///< [N/m]
   View<const double> rest_length;      ///< [m]

@@ -18,7 +18,7 @@ struct FlagCount {
 };
 
 /// One index = one flag, 0 or 1.
-struct FlagCountBody {
+struct FlagCountOp {
   View<const std::uint8_t> flags;
 
   TETWARP_HD FlagCount operator()(std::int64_t i) const { return {flags[i]}; }

@@ -50,7 +50,7 @@ struct GradientScalars {
 
 /// r = b - A x, z = p = D^-1 r. Returns r . z and b . D^-1 b.
 template <class T>
-struct IslandStartBody {
+struct IslandStartOp {
   GradientArrays<T> a;
 
   TETWARP_HD void residual(std::int64_t row, T* r, T* b) const {
@@ -82,7 +82,7 @@ struct IslandStartBody {
 
 /// q = A p. Returns p . q.
 template <class T>
-struct IslandProductBody {
+struct IslandProductOp {
   GradientArrays<T> a;
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t row) const {
@@ -100,7 +100,7 @@ struct IslandProductBody {
 
 /// x += step p, r -= step q, z = D^-1 r. Returns r . z.
 template <class T>
-struct IslandStepBody {
+struct IslandStepOp {
   GradientArrays<T> a;
   const double* step;
 
@@ -125,7 +125,7 @@ struct IslandStepBody {
 
 /// p = z + turn p.
 template <class T>
-struct IslandTurnBody {
+struct IslandTurnOp {
   GradientArrays<T> a;
   const double* turn;
 
@@ -137,7 +137,7 @@ struct IslandTurnBody {
 
 /// Returns e . D^-1 e of e = 2^-52 (|A| |x| + |b|), by which rounding may change the residual.
 template <class T>
-struct GradientRoundingBody {
+struct GradientRoundingOp {
   GradientArrays<T> a;
 
   TETWARP_HD void rounding(std::int64_t row, T* e) const {
@@ -167,7 +167,7 @@ struct GradientRoundingBody {
 
 /// x = 0.
 template <class T>
-struct GradientZeroBody {
+struct GradientZeroOp {
   GradientArrays<T> a;
 
   TETWARP_HD void operator()(std::int64_t row) const {
@@ -176,12 +176,12 @@ struct GradientZeroBody {
 };
 
 /// A single index, before an iteration.
-struct GradientBeginBody {
+struct GradientBeginOp {
   GradientScalars* s;
   TETWARP_HD void operator()(std::int64_t) const { s->square.value[0] = s->start.value[0]; }
 };
 /// A single index: the length of the step; zero ends the run.
-struct GradientLengthBody {
+struct GradientLengthOp {
   GradientScalars* s;
   TETWARP_HD void operator()(std::int64_t) const {
     const double square = s->square.value[0], curvature = s->curvature.value[0];
@@ -189,7 +189,7 @@ struct GradientLengthBody {
   }
 };
 /// A single index: the factor of the last direction in the next one.
-struct GradientMixBody {
+struct GradientMixOp {
   GradientScalars* s;
   TETWARP_HD void operator()(std::int64_t) const {
     const double square = s->square.value[0], next = s->next.value[0];
@@ -211,7 +211,7 @@ TETWARP_ANY_EXEC void island_product(Exec& exec,
                                      std::int64_t begin,
                                      std::int64_t end,
                                      PlainSums<1>* curvature) {
-  exec.sum_to(gradient_label(), begin, end, IslandProductBody<T>{a}, curvature);
+  exec.sum_to(gradient_label(), begin, end, IslandProductOp<T>{a}, curvature);
 }
 
 /// One iteration on rows [begin, end).
@@ -224,11 +224,11 @@ struct GradientIteration {
   template <class Exec>
   TETWARP_ANY_EXEC void run(Exec& exec) const {
     island_product(exec, a, begin, end, &scalars->curvature);
-    exec.once(gradient_label(), GradientLengthBody{scalars});
-    exec.sum_to(gradient_label(), begin, end, IslandStepBody<T>{a, &scalars->step}, &scalars->next);
-    exec.once(gradient_label(), GradientMixBody{scalars});
+    exec.once(gradient_label(), GradientLengthOp{scalars});
+    exec.sum_to(gradient_label(), begin, end, IslandStepOp<T>{a, &scalars->step}, &scalars->next);
+    exec.once(gradient_label(), GradientMixOp{scalars});
     exec.for_each(gradient_label(), end - begin,
-                  FromIndex<IslandTurnBody<T>>{{a, &scalars->turn}, begin});
+                  FromIndex<IslandTurnOp<T>>{{a, &scalars->turn}, begin});
   }
 };
 
@@ -262,11 +262,11 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
   GradientEnd result;
   double before = 0;
   for (int run = 0; run < max_runs; ++run) {
-    exec.sum_to(gradient_label(), begin, end, IslandStartBody<T>{a}, &scalars->start);
+    exec.sum_to(gradient_label(), begin, end, IslandStartOp<T>{a}, &scalars->start);
     const PlainSums<2> start = exec.load(&scalars->start);
     const double square = start.value[0], unit = start.value[1];
     if (unit == 0) {  // b = 0
-      exec.for_each(gradient_label(), end - begin, FromIndex<GradientZeroBody<T>>{{a}, begin});
+      exec.for_each(gradient_label(), end - begin, FromIndex<GradientZeroOp<T>>{{a}, begin});
       result.residual = 0;
       result.is_converged = true;
       break;
@@ -275,14 +275,14 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
     result.is_converged = result.residual <= options.tolerance;
     if (result.is_converged || result.iterations >= options.max_iterations) break;
     if (run > 0 && !(square < 0.25 * before)) {  // no further progress
-      exec.sum_to(gradient_label(), begin, end, GradientRoundingBody<T>{a}, &scalars->next);
+      exec.sum_to(gradient_label(), begin, end, GradientRoundingOp<T>{a}, &scalars->next);
       result.is_converged = square <= 16 * exec.load(&scalars->next).value[0];
       break;
     }
     before = square;
     const double target =
         max_of(0.5 * square_of(options.tolerance) * unit, square_of(run_target) * square);
-    exec.once(gradient_label(), GradientBeginBody{scalars});
+    exec.once(gradient_label(), GradientBeginOp{scalars});
     while (result.iterations < options.max_iterations) {
       const std::int64_t count =
           min_of(Iterations::most, options.max_iterations - result.iterations);

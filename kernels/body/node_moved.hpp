@@ -8,7 +8,7 @@
 namespace tetwarp {
 
 /// One index = one node.
-struct NodeMovedBody {
+struct NodeMovedOp {
   View<const double> position;   ///< [nodes][3]
   View<double> previous;         ///< in, out: becomes `position`
   View<std::uint8_t> has_moved;  ///< out
@@ -24,7 +24,7 @@ struct NodeMovedBody {
 };
 
 /// One index = one number: sets it.
-struct FillNumbersBody {
+struct FillNumbersOp {
   double value;
   View<double> to;
 

@@ -2,7 +2,7 @@
 /// Stage "forces" of a step: springs of rest length zero between points of bodies.
 ///
 /// A point p = f(q) moves with p' = J v. J is w_a 1 for node a, and [1, -[r]x] for a rigid body, r
-/// from its centre of mass. With J = [J_a, -J_b] the spring adds (dt^2 k + dt c) J^T J to the
+/// from its center of mass. With J = [J_a, -J_b] the spring adds (dt^2 k + dt c) J^T J to the
 /// system and -dt k J^T (p_a - p_b) to its load. The torque r x f of a pull f turns with the arm r:
 /// that adds a stiffness against rotations, see add_arm_block().
 #pragma once
@@ -34,7 +34,7 @@ struct SpringConstants {
 
 /// Places of rigid bodies.
 struct RigidPlaces {
-  View<const double> centre;    ///< [rigid][3] centre of mass [m]
+  View<const double> center;    ///< [rigid][3] center of mass [m]
   View<const double> rotation;  ///< [rigid][4] quaternion, principal axes to world
 };
 
@@ -45,7 +45,7 @@ struct SpringPull {
 };
 
 /// One index = one spring. Writes its own entry; any order.
-struct PointSpringBody {
+struct PointSpringOp {
   View<const SpringConstants> springs;
   View<const double> position;  ///< [nodes][3]
   RigidPlaces rigid;
@@ -60,7 +60,7 @@ struct PointSpringBody {
       double r[9];
       matrix_of_quaternion(rigid.rotation.data + 4 * std::int64_t{end.rigid}, r);
       multiply3(r, end.local, lever);
-      for (int i = 0; i < 3; ++i) p[i] = rigid.centre[3 * std::int64_t{end.rigid} + i] + lever[i];
+      for (int i = 0; i < 3; ++i) p[i] = rigid.center[3 * std::int64_t{end.rigid} + i] + lever[i];
     } else if (end.node[0] >= 0) {
       for (int i = 0; i < 3; ++i) p[i] = 0;
       for (int k = 0; k < 4 && end.node[k] >= 0; ++k) {

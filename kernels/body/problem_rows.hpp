@@ -46,7 +46,7 @@ TETWARP_HD void set_arm_rows(const double* axes,
 }
 
 /// One index = one arm. Writes its own numbers; any order.
-struct ContactRowsBody {
+struct ContactRowsOp {
   View<const double> axes;  ///< [contacts][9] normal, tangent 1, tangent 2
   View<const ContactArm> arms;
   View<const ArmPlace> places;
@@ -67,7 +67,7 @@ struct SystemBlockPlace {
 };
 
 /// One index = one block, stored column by column in the system and by rows in A.
-struct SystemGatherBody {
+struct SystemGatherOp {
   View<const SystemBlockPlace> places;
   View<const double> values;  ///< [places of the system][9]
   View<double> out;
@@ -84,7 +84,7 @@ struct SystemGatherBody {
 };
 
 /// One index = one item: copies 3 numbers, from those of `item` or to them.
-struct GatherThreeBody {
+struct GatherThreeOp {
   View<const std::int32_t> item;
   View<const double> from;
   View<double> to;
@@ -93,7 +93,7 @@ struct GatherThreeBody {
     for (int k = 0; k < 3; ++k) to[3 * i + k] = from[3 * std::int64_t{item[i]} + k];
   }
 };
-struct ScatterThreeBody {
+struct ScatterThreeOp {
   View<const std::int32_t> item;
   View<const double> from;
   View<double> to;

@@ -33,7 +33,7 @@ TETWARP_HD void turned_diagonal(const double* r, const double* d, double* m) {
 }
 
 /// One index = one rigid body. Writes its own entry; any order.
-struct RigidMidpointBody {
+struct RigidMidpointOp {
   static constexpr int resident_blocks = 2;  ///< 128 registers; the default of 64 spills
 
   View<const double> moments;           ///< [rigid][3] principal moments; prescribed bodies: 0
@@ -60,20 +60,20 @@ struct RigidMidpointBody {
 };
 
 /// One index = one rigid body: x += f dt v, Q <- exp(f dt omega) Q, L = I omega.
-struct RigidUpdateBody {
+struct RigidUpdateOp {
   View<const double> velocity;  ///< [blocks][3]
   std::int64_t first_block;     ///< of rigid bodies
   View<const double> inertia;   ///< [rigid][9]
   double time_step;
   View<const double> fraction;                      ///< f of rigid bodies, or empty: 1
-  View<double> centre, rotation, angular_momentum;  ///< in, out
+  View<double> center, rotation, angular_momentum;  ///< in, out
 
   TETWARP_HD void operator()(std::int64_t b) const {
     const double* v = velocity.data + 3 * (first_block + 2 * b);
     const double time = fraction.size == 0 ? time_step : fraction[b] * time_step;
     double turn[3];
     for (int i = 0; i < 3; ++i) {
-      centre[3 * b + i] += time * v[i];
+      center[3 * b + i] += time * v[i];
       turn[i] = time * v[3 + i];
     }
     turn_by_vector(turn, rotation.data + 4 * b);
@@ -82,7 +82,7 @@ struct RigidUpdateBody {
 };
 
 /// One index = one number of node positions: x += f dt v.
-struct NodeUpdateBody {
+struct NodeUpdateOp {
   View<const double> velocity;
   double time_step;
   View<const double> fraction;  ///< f of nodes, or empty: 1

@@ -21,7 +21,7 @@ struct LoadInput {
 };
 
 /// One index = one row, prescribed ones included. Writes its own numbers; any order.
-struct RowLoadBody {
+struct RowLoadOp {
   SystemRows rows;
   ElementResults from;
   ScalarEntries scalars;

@@ -75,7 +75,7 @@ struct DiagonalInverse {
 
 /// One index = one row with unknowns.
 template <class T>
-struct RowInvertBody {
+struct RowInvertOp {
   SystemRows rows;
   View<const double> values;
   DiagonalInverse<T> inverse;  ///< out
@@ -112,7 +112,7 @@ struct RowInvertBody {
 };
 
 /// One index = one row with unknowns: moves the prescribed columns to the right-hand side.
-struct RowPrescribedBody {
+struct RowPrescribedOp {
   SystemRows rows;
   View<const double> values, velocity;  ///< velocity: [rows][3]
   View<double> load;                    ///< in, out
@@ -127,7 +127,7 @@ struct RowPrescribedBody {
 };
 
 /// One index = one prescribed row: A v - b, the impulse that keeps its velocity.
-struct RowSupportBody {
+struct RowSupportOp {
   SystemRows rows;
   View<const double> values, velocity, load;
   View<double> impulse;  ///< out, [blocks][3]
@@ -144,7 +144,7 @@ struct RowSupportBody {
 };
 
 /// One index = one row: copies the velocity of its block; prescribed blocks have given ones.
-struct RowVelocityBody {
+struct RowVelocityOp {
   SystemRows rows;
   View<const double> block_velocity, prescribed;  ///< [blocks][3]
   View<double> velocity;                          ///< out, [rows][3]
@@ -155,8 +155,8 @@ struct RowVelocityBody {
     for (int i = 0; i < 3; ++i) velocity[3 * row + i] = from[3 * block + i];
   }
 };
-/// One index = one row: the inverse of RowVelocityBody.
-struct BlockVelocityBody {
+/// One index = one row: the inverse of RowVelocityOp.
+struct BlockVelocityOp {
   SystemRows rows;
   View<const double> velocity;
   View<double> block_velocity;  ///< out

@@ -24,7 +24,7 @@ struct StateCheck {
 };
 
 /// One index = one node, then one rigid body.
-struct StateCheckBody {
+struct StateCheckOp {
   View<const double> position;  ///< [nodes][3]
   View<const double> velocity;  ///< [blocks][3]
   RigidPlaces rigid;
@@ -54,7 +54,7 @@ struct StateCheckBody {
     if (r < 0) {
       return {undefined_of(position.data + 3 * i, 3) + undefined_of(velocity.data + 3 * i, 3), 0};
     }
-    const double undefined = undefined_of(rigid.centre.data + 3 * r, 3) +
+    const double undefined = undefined_of(rigid.center.data + 3 * r, 3) +
                              undefined_of(rigid.rotation.data + 4 * r, 4) +
                              undefined_of(angular_momentum.data + 3 * r, 3) +
                              undefined_of(velocity.data + 3 * (nodes + 2 * r), 6);
@@ -66,7 +66,7 @@ struct StateCheckBody {
 using ImpulseSums = PlainSums<7>;
 
 /// One index = one node, then one rigid body, then one spring.
-struct StepImpulseBody {
+struct StepImpulseOp {
   std::int64_t node_count, rigid_count;
   View<const double> support, force, velocity;  ///< [blocks][3] after the step
   double time_step;
@@ -125,13 +125,13 @@ struct StepImpulseBody {
   }
 };
 
-/// One index = one listed node, then one listed rigid body: copies its position, or its centre and
+/// One index = one listed node, then one listed rigid body: copies its position, or its center and
 /// rotation.
-struct PlaceCopyBody {
+struct PlaceCopyOp {
   View<const std::int32_t> nodes, bodies;
   View<const double> position;  ///< [nodes][3]
   RigidPlaces rigid;
-  View<double> places;  ///< out: [listed nodes][3], then [listed bodies][7], centre and rotation
+  View<double> places;  ///< out: [listed nodes][3], then [listed bodies][7], center and rotation
 
   TETWARP_HD void operator()(std::int64_t k) const {
     if (k < nodes.size) {
@@ -141,7 +141,7 @@ struct PlaceCopyBody {
     }
     const std::int64_t own = k - nodes.size, r = bodies[own];
     double* const to = places.data + 3 * nodes.size + 7 * own;
-    for (int i = 0; i < 3; ++i) to[i] = rigid.centre[3 * r + i];
+    for (int i = 0; i < 3; ++i) to[i] = rigid.center[3 * r + i];
     for (int i = 0; i < 4; ++i) to[3 + i] = rigid.rotation[4 * r + i];
   }
 };

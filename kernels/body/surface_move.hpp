@@ -26,7 +26,7 @@ struct SurfacePoint {
 /// Nodes and frames at the start of a step.
 struct SurfaceState {
   View<const double> position;  ///< [nodes][3] [m]
-  View<const double> centre;    ///< [rigid][3] [m]
+  View<const double> center;    ///< [rigid][3] [m]
   View<const double> rotation;  ///< [rigid][4] quaternion, frame to world
 };
 
@@ -44,7 +44,7 @@ struct SurfaceVelocity {
 
 /// A frame after a part of a step.
 struct MovedFrame {
-  double start[3], end[3];  ///< centre [m]
+  double start[3], end[3];  ///< center [m]
   double rotation[4];       ///< at the end
   double axis[3];           ///< unit, of the turn; 0 if there is none
   double angle;             ///< of the turn [rad]
@@ -75,13 +75,13 @@ TETWARP_HD void rotate3(const double* q, const double* x, double* turned) {
 }
 
 /// World position of a point that is fixed in a frame.
-TETWARP_HD void frame_point(const double* centre,
+TETWARP_HD void frame_point(const double* center,
                             const double* rotation,
                             const double* local,
                             double* x) {
   double arm[3];
   rotate3(rotation, local, arm);
-  for (int i = 0; i < 3; ++i) x[i] = centre[i] + arm[i];
+  for (int i = 0; i < 3; ++i) x[i] = center[i] + arm[i];
 }
 /// World position of a point that moves with nodes.
 /// @param place  (node, i): coordinate i of a node
@@ -93,11 +93,11 @@ TETWARP_HD void node_point(const Point& point, const Place& place, double* x) {
   }
 }
 /// World point and normal of a plane that is fixed in a frame, [6] each.
-TETWARP_HD void frame_plane(const double* centre,
+TETWARP_HD void frame_plane(const double* center,
                             const double* rotation,
                             const double* local,
                             double* plane) {
-  frame_point(centre, rotation, local, plane);
+  frame_point(center, rotation, local, plane);
   rotate3(rotation, local + 3, plane + 3);
   unit3(plane + 3, plane + 3);
 }
@@ -106,7 +106,7 @@ template <class Point>
 TETWARP_HD void start_of(const Point& point, const SurfaceState& at, double* x) {
   if (point.rigid >= 0) {
     const std::int64_t r = point.rigid;
-    return frame_point(at.centre.data + 3 * r, at.rotation.data + 4 * r, &point.local[0], x);
+    return frame_point(at.center.data + 3 * r, at.rotation.data + 4 * r, &point.local[0], x);
   }
   node_point(
       point, [&](std::int64_t node, int i) { return at.position[3 * node + i]; }, x);
@@ -120,7 +120,7 @@ TETWARP_HD MovedFrame moved_frame(const SurfaceState& at,
   MovedFrame frame;
   double turn[3];
   for (int i = 0; i < 3; ++i) {
-    frame.start[i] = at.centre[3 * rigid + i];
+    frame.start[i] = at.center[3 * rigid + i];
     frame.end[i] = frame.start[i] + mul_rn(seconds, v[i]);
     turn[i] = seconds * v[3 + i];
   }
@@ -131,7 +131,7 @@ TETWARP_HD MovedFrame moved_frame(const SurfaceState& at,
   return frame;
 }
 
-/// Writes a TurningFrame: centre, motion and rotation vector, [9]; all 0 where the frame does not
+/// Writes a TurningFrame: center, motion and rotation vector, [9]; all 0 where the frame does not
 /// turn.
 TETWARP_HD void turn_of(const MovedFrame& frame, double* turning) {
   const bool turns = frame.angle > 0;
@@ -171,7 +171,7 @@ TETWARP_HD double move_point(const Point& point,
 }
 
 /// One index = one vertex, then one plane. Writes its own place at the start; any order.
-struct SurfaceStartBody {
+struct SurfaceStartOp {
   View<const SurfacePoint> points;
   View<const double> plane_local;        ///< [planes][6] point and normal in a frame
   View<const std::int32_t> plane_rigid;  ///< [planes] that frame
@@ -182,13 +182,13 @@ struct SurfaceStartBody {
   TETWARP_HD void operator()(std::int64_t i) const {
     if (i < points.size) return start_of(points[i], at, start.data + 3 * i);
     const std::int64_t p = i - points.size, r = plane_rigid[p];
-    frame_plane(at.centre.data + 3 * r, at.rotation.data + 4 * r, plane_local.data + 6 * p,
+    frame_plane(at.center.data + 3 * r, at.rotation.data + 4 * r, plane_local.data + 6 * p,
                 plane_start.data + 6 * p);
   }
 };
 
 /// One index = one body. Writes its own frame; any order.
-struct FrameMoveBody {
+struct FrameMoveOp {
   View<const std::int32_t> body_rigid;  ///< [bodies] frame, or -1
   SurfaceState at;
   SurfaceVelocity by;
@@ -204,7 +204,7 @@ struct FrameMoveBody {
 };
 
 /// One index = one vertex, then one plane. Writes its own place at the end; any order.
-struct SurfaceMoveBody {
+struct SurfaceMoveOp {
   View<const SurfacePoint> points;
   View<const double> plane_local;       ///< [planes][6]
   View<const std::int32_t> plane_body;  ///< [planes]

@@ -90,7 +90,7 @@ TETWARP_HD void corotated_forces(
 }
 
 /// One index = one tetrahedron. Writes its own entries; any order.
-struct TetForceBody {
+struct TetForceOp {
   TetConstants tets;
   View<const double> position;         ///< [nodes][3]
   View<const std::uint8_t> has_moved;  ///< [nodes] since the stage ran before
@@ -143,7 +143,7 @@ struct TetForceBody {
 
 /// Forces and turned gradients of all tetrahedra.
 template <class Exec>
-void tet_forces(Exec& exec, const char* label, const TetForceBody& body) {
+void tet_forces(Exec& exec, const char* label, const TetForceOp& body) {
   exec.for_each(label, body.tets.count, body);
 }
 

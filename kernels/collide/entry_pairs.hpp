@@ -17,7 +17,7 @@ struct ItemPair {
 ///
 /// Two items share several cells. Their pair is kept in the cell that holds the lowest corner of
 /// the intersection of their boxes, in the grid of the larger item: each pair once.
-struct EntryPairsBody {
+struct EntryPairsOp {
   CollideView scene;
   const GridPlan* plan;
   View<const KeyValue> entries;  ///< sorted by cell, then item

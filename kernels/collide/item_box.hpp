@@ -13,7 +13,7 @@ constexpr std::int8_t skipped_item = -1;
 
 /// One index = one item. An item is skipped if its box overlaps the box of no body that its own
 /// body may touch.
-struct ItemBoxBody {
+struct ItemBoxOp {
   CollideView scene;
   View<const Box> vertex_boxes;
   View<const Box> body_boxes;
@@ -48,10 +48,10 @@ struct ItemBoxBody {
   }
 };
 
-constexpr std::int64_t size_run = 1024;  ///< items that one index of SizeCountBody counts
+constexpr std::int64_t size_run = 1024;  ///< items that one index of SizeCountOp counts
 
 /// One index = size_run items. Counts them by size.
-struct SizeCountBody {
+struct SizeCountOp {
   View<const std::int8_t> sizes;
   View<std::int32_t> counts;  ///< out [runs][item_sizes]
 
@@ -66,7 +66,7 @@ struct SizeCountBody {
 };
 
 /// One index = one size. Sums its counts of all runs.
-struct SizeSumBody {
+struct SizeSumOp {
   View<const std::int32_t> counts;  ///< [runs][item_sizes]
   View<std::int32_t> sums;          ///< out [item_sizes]
 

@@ -44,7 +44,7 @@ struct GridPlan {
 /// One index = one item. Appends its entries, those of its own grid first. The key of an entry is
 /// the cell, its value the item, and its flag is set where the item is smaller than those of the
 /// grid.
-struct ItemCellsBody {
+struct ItemCellsOp {
   const GridPlan* plan;
   View<const Box> boxes;
   View<const std::int8_t> sizes;

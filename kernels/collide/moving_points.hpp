@@ -9,10 +9,10 @@
 
 namespace tetwarp {
 
-/// A frame that turns at constant speed while its centre goes straight:
-/// x(time) = centre + time motion + exp(time turn) (x(0) - centre).
+/// A frame that turns at constant speed while its center goes straight:
+/// x(time) = center + time motion + exp(time turn) (x(0) - center).
 struct TurningFrame {
-  double centre[3];
+  double center[3];
   double motion[3];
   double turn[3];  ///< rotation vector [rad]
 };
@@ -120,7 +120,7 @@ struct LocalPoints {
     double axis[3], arm[3], most = 0;
     for (int i = 0; i < 3; ++i) axis[i] = frame.turn[i] / angle;
     for (int k = begin; k < end; ++k) {
-      minus3(points.start[k], frame.centre, arm);
+      minus3(points.start[k], frame.center, arm);
       cross3(axis, arm, bow_sine[k]);
       cross3(axis, bow_sine[k], bow_cosine[k]);
       most = max_of(most, dot3(bow_sine[k], bow_sine[k]));

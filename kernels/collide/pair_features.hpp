@@ -19,7 +19,7 @@ struct PlaneView {
 /// One index = one pair of items; the indices after those = one vertex each with the planes near
 /// its body. Appends the pairs of features that are not certain to stay apart, each pair of a scene
 /// once.
-struct PairFeaturesBody {
+struct PairFeaturesOp {
   CollideView scene;
   View<const ItemPair> pairs;
   MotionView motion;
@@ -168,7 +168,7 @@ struct PairFeaturesBody {
       minus3(x.data + 3 * std::int64_t{v}, own.data + 6 * std::int64_t{plane}, way);
       reach = max_of(reach, sqrt(dot3(way, way)));
     }
-    minus3(motion.plane_start.data + 6 * std::int64_t{plane}, frame->centre, arm);
+    minus3(motion.plane_start.data + 6 * std::int64_t{plane}, frame->center, arm);
     const double bow = sqrt(dot3(arm, arm)) * square / 8;
     return bow + (reach + bow) * square / 8;
   }

@@ -19,10 +19,10 @@ TETWARP_HD bool is_nearer(const PairGap& a, const PairGap& b) {
   return a.pair.a != b.pair.a ? a.pair.a < b.pair.a : a.pair.b < b.pair.b;
 }
 
-constexpr std::int64_t gap_run = 64;  ///< pairs of one index of PairGapBody
+constexpr std::int64_t gap_run = 64;  ///< pairs of one index of PairGapOp
 
 /// One index = gap_run pairs of features. Writes the nearest of them.
-struct PairGapBody {
+struct PairGapOp {
   CollideView scene;
   MotionView motion;  ///< only its start is read
   View<const FeaturePair> pairs;

@@ -87,7 +87,7 @@ TETWARP_HD double axis_distance(PairKind kind, const double* const* x, double* w
 }
 
 /// One index = one pair of features. Writes its own entry; any order.
-struct PairTouchBody {
+struct PairTouchOp {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
 
   CollideView scene;
@@ -144,7 +144,7 @@ struct FeatureTouch {
 
 /// One index = one pair of features. Appends those that touch or start within a distance, except
 /// pairs of two still bodies.
-struct TouchFilterBody {
+struct TouchFilterOp {
   CollideView scene;
   View<const std::uint8_t> is_still;  ///< [bodies], or empty: none
   View<const FeaturePair> pairs;
@@ -166,7 +166,7 @@ struct TouchFilterBody {
 };
 
 /// One index = one pair. Appends those of its bodies that have unknowns and are still.
-struct ReachedBody {
+struct ReachedOp {
   CollideView scene;
   View<const std::uint8_t> is_still;  ///< [bodies]
   View<const FeatureTouch> pairs;

@@ -40,7 +40,7 @@ TETWARP_HD bool pushes_before(const PairTouch& p, const PairTouch& q) {
 /// One index = one touch. Appends owner, number and side of each touch that sinks in, for each side
 /// with unknowns: owners are the body if it is rigid, else the vertices of the nearest point. The
 /// bit of accepted pairs is set for side b.
-struct SinkBody {
+struct SinkOp {
   View<const PairTouch> touches;
   TouchView view;
   SinkOwners owners;
@@ -91,9 +91,9 @@ TETWARP_HD bool begins_owner(View<const KeyValue> sinks, std::int64_t i) {
   return i == 0 || key_of(sinks[i - 1]) != key_of(sinks[i]);
 }
 
-/// One index = one entry of SinkBody, sorted by owner. The first of an owner, and every 64th entry,
+/// One index = one entry of SinkOp, sorted by owner. The first of an owner, and every 64th entry,
 /// appends the touch that pushes first of the owner's next entries, so that no index looks at many.
-struct FirstPushBody {
+struct FirstPushOp {
   View<const PairTouch> touches;
   View<const KeyValue> sinks;
 
@@ -105,8 +105,8 @@ struct FirstPushBody {
   }
 };
 
-/// One index = one entry of FirstPushBody. The first of an owner writes the owner's way out.
-struct WayOutBody {
+/// One index = one entry of FirstPushOp. The first of an owner writes the owner's way out.
+struct WayOutOp {
   View<const PairTouch> touches;
   View<const KeyValue> sinks;
   View<KeyValue> ways;  ///< out [owners] an entry of the owner
@@ -118,7 +118,7 @@ struct WayOutBody {
 };
 
 /// One index = one owner. Writes that it has no way out; any order.
-struct NoWayOutBody {
+struct NoWayOutOp {
   View<KeyValue> ways;  ///< out
 
   TETWARP_HD void operator()(std::int64_t i) const { ways[i] = no_key_value; }
@@ -129,7 +129,7 @@ struct NoWayOutBody {
 /// at the start and face each other as they do then press where they are, unless both bodies
 /// deform, which saves sweeps. A side is not moved where the touch itself pushes along the way out.
 /// Planes have nothing that could be hit from beneath.
-struct SunkHitBody {
+struct SunkHitOp {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
 
   View<const FeatureTouch> pairs;

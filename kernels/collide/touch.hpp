@@ -95,7 +95,7 @@ TETWARP_ANY_EXEC inline Vec3 turned(const TurningFrame& frame, double time, cons
 /// @param frame  that the body follows, or null: the point moves straight
 TETWARP_HD Vec3 way_at(const TurningFrame* frame, const Vec3& start, const Vec3& end, double time) {
   if (frame == nullptr) return times(time, minus(end, start));
-  const Vec3 arm = minus(start, vec3_of(frame->centre));
+  const Vec3 arm = minus(start, vec3_of(frame->center));
   return plus(times(time, vec3_of(frame->motion)), minus(turned(*frame, time, arm), arm));
 }
 

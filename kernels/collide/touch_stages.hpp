@@ -10,7 +10,7 @@
 namespace tetwarp {
 
 /// One index = one pair. Writes its touch at the nearest points; any order.
-struct TouchBody {
+struct TouchOp {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
 
   View<const FeatureTouch> pairs;
@@ -46,7 +46,7 @@ struct TouchBody {
 };
 
 /// One index = one pair and its touch. Appends the touches at both ends of an overlap of capsules.
-struct EndTouchBody {
+struct EndTouchOp {
   View<const FeatureTouch> pairs;
   View<const PairTouch> touches;
   TouchView view;
@@ -65,7 +65,7 @@ struct EndTouchBody {
 };
 
 /// One index = one pair and its touch. Appends the pair if the touch is a hit.
-struct HitBody {
+struct HitOp {
   View<const FeatureTouch> pairs;
   View<const PairTouch> touches;
 
@@ -77,7 +77,7 @@ struct HitBody {
 
 /// One index = one pair that is hit. Appends it if its features are what is nearest of their
 /// surfaces at the hit.
-struct NearestHitBody {
+struct NearestHitOp {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
 
   View<const FeatureTouch> pairs;
@@ -105,7 +105,7 @@ struct TouchList {
 };
 
 /// One index = one touch. Writes its own copy; any order.
-struct TouchCopyBody {
+struct TouchCopyOp {
   TouchList from;
   View<PairTouch> to;  ///< out
 
@@ -114,7 +114,7 @@ struct TouchCopyBody {
 
 /// One index = one touch. Writes its key: the first feature, with edges after vertices, and the
 /// number of the touch.
-struct TouchKeyBody {
+struct TouchKeyOp {
   TouchList touches;
   std::int64_t vertex_count;
 
@@ -131,7 +131,7 @@ struct TouchKeyBody {
 /// those hit on the way by time. Its touches with other parts of that body are also kept where
 /// these face elsewhere, see TouchChoice. Where a pair is near in one detection and hit in a later
 /// one, the later touch replaces the earlier one.
-struct TouchChoiceBody {
+struct TouchChoiceOp {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
   enum Mark : std::int8_t { dropped, kept, kept_with_area };
 
@@ -226,8 +226,8 @@ struct TouchChoiceBody {
   }
 };
 
-/// One index = one touch in the order of TouchChoiceBody. Appends those that are kept, with areas.
-struct ChosenTouchBody {
+/// One index = one touch in the order of TouchChoiceOp. Appends those that are kept, with areas.
+struct ChosenTouchOp {
   TouchList touches;
   TouchAreaView areas;
   View<const double> start;  ///< [vertices][3]
@@ -236,9 +236,9 @@ struct ChosenTouchBody {
 
   template <class Emit>
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
-    if (mark[i] == TouchChoiceBody::dropped) return;
+    if (mark[i] == TouchChoiceOp::dropped) return;
     const PairTouch& touch = touches[value_of(order[i])];
-    emit(ChosenTouch{touch, mark[i] == TouchChoiceBody::kept_with_area ? area_of(touch) : 0});
+    emit(ChosenTouch{touch, mark[i] == TouchChoiceOp::kept_with_area ? area_of(touch) : 0});
   }
 
  private:

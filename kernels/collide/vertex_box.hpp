@@ -29,7 +29,7 @@ struct RunBox {
 /// sagitta and half the search distance, so that features within that distance have boxes that
 /// overlap. The pairs of items come from the larger boxes `found`; later motions whose boxes lie
 /// within them need no new pairs.
-struct VertexBoxBody {
+struct VertexBoxOp {
   View<const VertexRun> runs;
   MotionView motion;
   View<const double> radius;
@@ -83,7 +83,7 @@ struct VertexBoxBody {
 };
 
 /// One index = one run of boxes. Writes their union after them.
-struct BoxUniteBody {
+struct BoxUniteOp {
   View<const VertexRun> runs;
   std::int64_t first;  ///< first run of `runs`; also the place of its union in `boxes`
   View<RunBox> boxes;  ///< in, out

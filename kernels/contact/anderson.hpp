@@ -101,14 +101,14 @@ struct AndersonState {
 };
 
 /// A single index: the action of the next step.
-struct AndersonDecideBody {
+struct AndersonDecideOp {
   AndersonState* state;
   TETWARP_HD void operator()(std::int64_t) const { state->decide(); }
 };
 
 template <class Exec>
 TETWARP_ANY_EXEC void anderson_decide(Exec& exec, AndersonState* state) {
-  exec.once("contact/mix", AndersonDecideBody{state});
+  exec.once("contact/mix", AndersonDecideOp{state});
 }
 
 /// Anderson acceleration, type II, window 8 (Walker and Ni 2011), with the least squares in a
@@ -134,14 +134,14 @@ class AndersonMixer {
   };
 
   /// Clears the columns of changes: columns not yet written enter sums with a factor of zero.
-  struct ZeroBody {
+  struct ZeroOp {
     T* values;
     TETWARP_HD void operator()(std::int64_t i) const { values[i] = 0; }
   };
 
   /// One run of entries: stores defect and image, their changes in column `newest`, and returns
   /// the products of the new change and the defect with all columns.
-  struct ObserveBody {
+  struct ObserveOp {
     const AndersonState* state;
     const double* weights;
     View<const T> x, image;
@@ -192,7 +192,7 @@ class AndersonMixer {
     }
   };
 
-  struct AdvanceBody {
+  struct AdvanceOp {
     const AndersonState* state;
     Columns columns;
     View<T> image;
@@ -224,17 +224,17 @@ class AndersonMixer {
         weights_(weights),
         columns_{work.data, weights.size},
         state_(exec.template state<AndersonState>()) {
-    exec_.for_each("contact/mix", 2 * window * weights.size, ZeroBody{columns_.defect_changes()});
+    exec_.for_each("contact/mix", 2 * window * weights.size, ZeroOp{columns_.defect_changes()});
   }
 
   TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
     exec_.sum_runs_to("contact/mix", 0, x.size,
-                      ObserveBody{state_, weights_.data, x, image, columns_}, &state_->sums);
+                      ObserveOp{state_, weights_.data, x, image, columns_}, &state_->sums);
   }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->sums.value[2 * window])); }
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T> image) {
     anderson_decide(exec_, state_);
-    exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, columns_, image});
+    exec_.for_runs("contact/mix", image.size, AdvanceOp{state_, columns_, image});
     // If the action is not read, the image counts as replaced, which is always correct.
     return exec_.load_without_sync(&state_->action, AndersonState::Action::combine) !=
            AndersonState::Action::keep;

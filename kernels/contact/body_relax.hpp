@@ -19,7 +19,7 @@ struct BlockContacts {
 
 /// One index = one block: v = v_free + A^-1 J^T r, added in the order of the contacts.
 template <class T>
-struct BodyVelocityBody {
+struct BodyVelocityOp {
   BlockContacts contacts;
   View<const std::int64_t> dof_start;
   View<const T> response;
@@ -94,7 +94,7 @@ TETWARP_HD void multiply_block_row(const SystemView<T>& a, std::int64_t b, const
 
 /// One index = one block: the defect d = b + J^T r - A v.
 template <class T>
-struct BodyDefectBody {
+struct BodyDefectOp {
   SystemView<T> system;
   BlockContacts contacts;
   View<const T> jacobian;
@@ -138,7 +138,7 @@ TETWARP_HD void update_block(const T* m, int size, T keep, T factor, const T* x,
 
 /// One index = one block: v += omega D^-1 d.
 template <class T>
-struct BodyRelaxBody {
+struct BodyRelaxOp {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> inverse_start;
   View<const T> inverse;
@@ -156,8 +156,8 @@ struct BodyRelaxBody {
 
 /// One index = one block: v = x + omega D^-1 (b + J^T r - A x). x and v are different memory.
 template <class T>
-struct BodyStepBody {
-  BodyDefectBody<T> defect;  ///< of x
+struct BodyStepOp {
+  BodyDefectOp<T> defect;  ///< of x
   View<const std::int64_t> inverse_start;
   View<const T> inverse;
   T relaxation;
@@ -175,7 +175,7 @@ struct BodyStepBody {
 
 /// One index = one block: copies the diagonal of A in its dofs.
 template <class T>
-struct DiagonalBody {
+struct DiagonalOp {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> diagonal_value;
   View<const T> system;
@@ -193,12 +193,9 @@ struct DiagonalBody {
 /// Runs one of the bodies above for blocks [first, last).
 ///
 /// Determinism: same bits on every back end with contraction off; contacts are gathered in order.
-template <class Exec, class Body>
-TETWARP_ANY_EXEC void body_relax(Exec& exec,
-                                 std::int64_t first,
-                                 std::int64_t last,
-                                 const Body& body) {
-  exec.for_each("contact/relax", last - first, FromIndex<Body>{body, first});
+template <class Exec, class Op>
+TETWARP_ANY_EXEC void body_relax(Exec& exec, std::int64_t first, std::int64_t last, const Op& op) {
+  exec.for_each("contact/relax", last - first, FromIndex<Op>{op, first});
 }
 
 }  // namespace tetwarp

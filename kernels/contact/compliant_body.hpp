@@ -72,7 +72,7 @@ struct CompliantBodies {
 
 /// Index (node, other, item): one 3x3 block of the compliance of a body: the velocity of node
 /// `other`, counted from the first node of the body, for unit impulses on `node`.
-struct ComplianceBlockBody {
+struct ComplianceBlockOp {
   CompliantBodies of;
   View<float> compliance;  ///< out
 
@@ -89,7 +89,7 @@ struct ComplianceBlockBody {
 
 /// One index = one number of a node: the velocity caused by impulses on the nodes. Successive
 /// indices read successive numbers of the compliance.
-struct NodeMoveBody {
+struct NodeMoveOp {
   CompliantBodies of;
   View<const double> push, from;  ///< [nodes][3] in frames; `from` may be empty: zero
   View<double> velocity;          ///< out: from + compliance push
@@ -107,7 +107,7 @@ struct NodeMoveBody {
 
 /// One index = one number of `moved`: M^-1 push, both in frames. Successive indices read successive
 /// numbers of the inverse.
-struct ComplianceBody {
+struct ComplianceOp {
   CompliantBodies of;
   View<const double> push;
   View<double> moved;  ///< out
@@ -134,7 +134,7 @@ struct ComplianceBody {
 };
 
 /// One index = one row: to = from + moved.
-struct RowMoveBody {
+struct RowMoveOp {
   CompliantBodies of;
   View<const double> moved;  ///< in frames
   View<const double> from;
@@ -148,7 +148,7 @@ struct RowMoveBody {
 };
 
 /// One index = one node: its velocity in the frame of its body.
-struct NodeVelocityBody {
+struct NodeVelocityOp {
   CompliantBodies of;
   View<const double> velocity;  ///< [rows][3]
   View<double> node_velocity;   ///< out, [nodes][3]

@@ -28,7 +28,7 @@ struct InverseBlocks {
 };
 
 /// z = p = D^-1 g; returns g . z.
-struct GradientStartBody {
+struct GradientStartOp {
   InverseBlocks inverse;
   const double* g;
   double *z, *p;
@@ -39,7 +39,7 @@ struct GradientStartBody {
   }
 };
 /// q = A p; returns p . q.
-struct GradientProductBody {
+struct GradientProductOp {
   SystemView<double> system;
   const double* p;
   double* q;
@@ -53,7 +53,7 @@ struct GradientProductBody {
   }
 };
 /// x += a p, g -= a q, z = D^-1 g; returns g . z.
-struct GradientStepBody {
+struct GradientStepOp {
   InverseBlocks inverse;
   const double* a;
   const double *p, *q;
@@ -68,7 +68,7 @@ struct GradientStepBody {
   }
 };
 /// p = z + c p.
-struct GradientTurnBody {
+struct GradientTurnOp {
   View<const std::int64_t> dof_start;
   const double* c;
   const double* z;
@@ -80,7 +80,7 @@ struct GradientTurnBody {
 };
 
 /// A single index: the quotient of two numbers, or zero if one of them is not positive.
-struct GradientQuotientBody {
+struct GradientQuotientOp {
   const PlainSums<1>*above, *below;
   double* quotient;
   TETWARP_HD void operator()(std::int64_t) const {

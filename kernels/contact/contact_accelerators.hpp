@@ -18,7 +18,7 @@ namespace tetwarp {
 
 /// One index = one entry of the squared difference of two vectors in a diagonal metric.
 template <class T>
-struct DefectBody {
+struct DefectOp {
   View<const double> weights;
   View<const T> x, image;
 
@@ -38,7 +38,7 @@ class PlainSteps {
       : exec_(exec), weights_(weights), sums_(exec.template state<PlainSums<1>>()) {}
 
   TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
-    exec_.sum_to("contact/mix", 0, x.size, DefectBody<T>{weights_, x, image}, sums_);
+    exec_.sum_to("contact/mix", 0, x.size, DefectOp<T>{weights_, x, image}, sums_);
   }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&sums_->value[0])); }
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T>) { return false; }
@@ -64,7 +64,7 @@ class ConjugateDirection {
   };
 
   /// A single index: the factor of the next step, or a restart.
-  struct DecideBody {
+  struct DecideOp {
     State* state;
     TETWARP_HD void operator()(std::int64_t) const {
       const double square = state->square.value[0];
@@ -74,7 +74,7 @@ class ConjugateDirection {
     }
   };
 
-  struct AdvanceBody {
+  struct AdvanceOp {
     const State* state;
     View<const T> x;
     View<T> image;
@@ -102,14 +102,14 @@ class ConjugateDirection {
         state_(exec.template state<State>()) {}
 
   TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
-    exec_.sum_to("contact/mix", 0, x.size, DefectBody<T>{weights_, x, image}, &state_->square);
+    exec_.sum_to("contact/mix", 0, x.size, DefectOp<T>{weights_, x, image}, &state_->square);
   }
   /// The state, in memory of the executor.
   const State* state() const { return state_; }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->square.value[0])); }
   TETWARP_ANY_EXEC bool advance(View<const T> x, View<T> image) {
-    exec_.once("contact/mix", DecideBody{state_});
-    exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, x, image, direction_});
+    exec_.once("contact/mix", DecideOp{state_});
+    exec_.for_runs("contact/mix", image.size, AdvanceOp{state_, x, image, direction_});
     return true;
   }
 

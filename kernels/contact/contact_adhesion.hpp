@@ -99,7 +99,7 @@ struct AdhesionViews {
 };
 
 /// One index = one contact; any order. Outputs may be the arrays of the inputs.
-struct ContactAdhesionBody {
+struct ContactAdhesionOp {
   AdhesionViews in;
   bool euler;
   double debond_gap_factor;
@@ -167,7 +167,7 @@ struct ContactAdhesionBody {
 /// Source: Gascon 2010, section 4.3.3, with the gap in place of the traction, and with bonding in
 /// compression; the closed form and the moved anchors are ours.
 template <class Exec>
-void contact_adhesion(Exec& exec, const ContactAdhesionBody& body) {
+void contact_adhesion(Exec& exec, const ContactAdhesionOp& body) {
   exec.for_each("contact/adhesion", body.next_intensity.size, body);
 }
 

@@ -16,8 +16,8 @@ namespace tetwarp {
 /// the interval of weights. With tangential offsets this holds approximately: measured values of
 /// the smallest sum over the ends are up to 2.2 % too high, so 20 % are subtracted. This margin is
 /// not proven.
-struct FreeResidualBoundBody {
-  ContactResidualBody<double> natural;  ///< with blocks B', impulses zero, free velocities
+struct FreeResidualBoundOp {
+  ContactResidualOp<double> natural;  ///< with blocks B', impulses zero, free velocities
 
   TETWARP_HD ContactSums operator()(std::int64_t i) const {
     constexpr double tiny = 1e-150, margin = 0.8;
@@ -55,8 +55,8 @@ struct FreeResidualBoundBody {
 ///
 /// If the law does not hold exactly at u' (bodies with several contacts, swept one after the
 /// other), the residual there is added, in the weights rho(B'): then the result is an estimate.
-struct ResidualBoundBody {
-  ContactResidualBody<double> natural;     ///< with blocks B' and the velocities u
+struct ResidualBoundOp {
+  ContactResidualOp<double> natural;       ///< with blocks B' and the velocities u
   View<const double> consistent_velocity;  ///< u'
 
   TETWARP_HD ContactSums operator()(std::int64_t i) const {

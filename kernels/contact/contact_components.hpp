@@ -44,14 +44,14 @@ struct Forest {
 };
 
 /// One index = one item: makes it a separate tree.
-struct MakeTreeBody {
+struct MakeTreeOp {
   View<std::int32_t> parent;
   TETWARP_HD void operator()(std::int64_t i) const { parent[i] = static_cast<std::int32_t>(i); }
 };
 
 /// One index = one list: puts the trees of its items under their lowest root. Returns how many
 /// trees were moved.
-struct UniteBody {
+struct UniteOp {
   View<const std::int64_t> start;
   View<const std::int32_t> item;
   Forest forest;
@@ -74,7 +74,7 @@ struct UniteBody {
 };
 
 /// One index = one item: puts it directly under its root.
-struct CompressBody {
+struct CompressOp {
   Forest forest;
   TETWARP_HD void operator()(std::int64_t i) const {
     lower_to(&forest.parent[i], forest.root_of(static_cast<std::int32_t>(i)));
@@ -95,12 +95,12 @@ void contact_components(Exec& exec,
                         View<const std::int32_t> item,
                         View<std::int32_t> lowest) {
   constexpr const char* label = "contact/components";
-  exec.for_each(label, lowest.size, MakeTreeBody{lowest});
-  const UniteBody join = {start, item, {lowest}};
+  exec.for_each(label, lowest.size, MakeTreeOp{lowest});
+  const UniteOp join = {start, item, {lowest}};
   double joined = 0;
   do {
     joined = exec.template sum<PlainSums<1>>(label, 0, start.size - 1, join).value[0];
-    exec.for_each(label, lowest.size, CompressBody{{lowest}});
+    exec.for_each(label, lowest.size, CompressOp{{lowest}});
   } while (joined > 0);
 }
 

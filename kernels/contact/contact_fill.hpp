@@ -49,7 +49,7 @@ struct SystemViews {
 
 /// One index = `run` stored numbers, each added at its target. If two numbers have the same target,
 /// a single index adds all of them.
-struct ScatterBody {
+struct ScatterOp {
   View<const double> values;
   View<const std::int64_t> target;
   std::int64_t run;
@@ -64,7 +64,7 @@ struct ScatterBody {
 
 /// One index = one slot: friction and springs of its contact, kappa = dt^2 area C beta^2; another
 /// stage body sets its block. Returns how many rows and springs are left out.
-struct ContactConstantsBody {
+struct ContactConstantsOp {
   ContactInput in;
   View<const std::int32_t> contact_of_slot;
   ContactChoices choices;
@@ -116,7 +116,7 @@ struct ContactConstantsBody {
 };
 
 /// One index = one slot: stores it as the slot of its contact.
-struct SlotOfContactBody {
+struct SlotOfContactOp {
   View<const std::int32_t> contact_of_slot;
   View<std::int32_t> slot_of_contact;
 
@@ -127,7 +127,7 @@ struct SlotOfContactBody {
 
 /// One index = one slot: how many slots the contact of a rolling block is away from it; see
 /// row_law.hpp.
-struct RollingLinkBody {
+struct RollingLinkOp {
   ContactInput in;
   View<const std::int32_t> contact_of_slot;
   View<const std::int32_t> slot_of_contact;
@@ -142,7 +142,7 @@ struct RollingLinkBody {
 
 /// One index = one place: copies the `width` numbers of its item.
 template <int width>
-struct GatherBody {
+struct GatherOp {
   View<const std::int32_t> item;
   View<const double> in;
   View<double> out;
@@ -153,19 +153,19 @@ struct GatherBody {
 };
 
 /// One index = one contact of a Delassus matrix: its diagonal block and tangential metric.
-struct DelassusDiagonalBody {
+struct DelassusDiagonalOp {
   View<const double> delassus;
   View<const std::int64_t> diagonal;
   View<ContactConstants<double>> constants;
 
   TETWARP_HD void operator()(std::int64_t c) const {
     for (int e = 0; e < 9; ++e) constants[c].block[e] = delassus[9 * diagonal[c] + e];
-    ContactMetricBody<double>{constants}(c);
+    ContactMetricOp<double>{constants}(c);
   }
 };
 
 /// One index = one block of A: its inverse, and v_free = A^-1 b if A couples it to no other block.
-struct BlockSetupBody {
+struct BlockSetupOp {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> diagonal_value;
   View<const std::int64_t> inverse_start;
@@ -178,29 +178,29 @@ struct BlockSetupBody {
   TETWARP_HD void operator()(std::int64_t b) const {
     const std::int64_t first = inverse_start[b], size = inverse_start[b + 1] - first;
     for (std::int64_t e = 0; e < size; ++e) inverse[first + e] = system[diagonal_value[b] + e];
-    BlockInvertBody<double>{dof_start, inverse_start, inverse}(b);
+    BlockInvertOp<double>{dof_start, inverse_start, inverse}(b);
     for (std::int64_t d = dof_start[b]; d < dof_start[b + 1]; ++d) body_free[d] = 0;
     if (is_coupled[b] == 0) {
-      BodyRelaxBody<double>{dof_start, inverse_start, inverse, 1.0, load, body_free}(b);
+      BodyRelaxOp<double>{dof_start, inverse_start, inverse, 1.0, load, body_free}(b);
     }
   }
 };
 
 /// One index = one contact between bodies: its responses, its own block, q = J v_free + w.
-struct ContactSetupBody {
-  ContactResponseBody<double> response;  ///< with the relaxation of coupled islands
-  View<const std::uint8_t> is_coupled;   ///< [blocks]
+struct ContactSetupOp {
+  ContactResponseOp<double> response;   ///< with the relaxation of coupled islands
+  View<const std::uint8_t> is_coupled;  ///< [blocks]
   BodiesView<double> bodies;
   View<const double> body_free;
   View<double> free_velocity;
 
   TETWARP_HD void operator()(std::int64_t c) const {
     const PairView& pairs = response.pairs;
-    ContactResponseBody<double> own = response;
+    ContactResponseOp<double> own = response;
     // All blocks of a contact are in one island, so testing the first one suffices.
     if (is_coupled[pairs.block[pairs.pair_start[c]]] == 0) own.relaxation = 1;
     own(c);
-    ContactMetricBody<double>{response.constants}(c);
+    ContactMetricOp<double>{response.constants}(c);
     bodies.velocity_at(c, body_free.data, free_velocity.data + 3 * c);
   }
 };
@@ -232,22 +232,22 @@ ContactSavings fill_numbers(Exec& exec,
   const auto scatter = [&](View<const double> values, View<const std::int64_t> target,
                            bool is_unique, View<double> to) {
     const std::int64_t runs = is_unique ? values.size : std::int64_t{values.size > 0};
-    exec.for_each(label, runs, ScatterBody{values, target, is_unique ? 1 : values.size, to});
+    exec.for_each(label, runs, ScatterOp{values, target, is_unique ? 1 : values.size, to});
   };
   const std::int64_t slots = indices.slots();
-  const ContactConstantsBody constants = {in, indices.contact_of_slot, choices, out.constants};
+  const ContactConstantsOp constants = {in, indices.contact_of_slot, choices, out.constants};
   const auto left_out = exec.template sum<PlainSums<2>>(label, 0, slots, constants);
   if (in.row_kind.size > 0) {
     typename Exec::template Vector<std::int32_t> places;
     exec.make_zeros(places, slots);
-    exec.for_each(label, slots, SlotOfContactBody{indices.contact_of_slot, view_of(places)});
+    exec.for_each(label, slots, SlotOfContactOp{indices.contact_of_slot, view_of(places)});
     exec.for_each(label, slots,
-                  RollingLinkBody{in, indices.contact_of_slot,
-                                  View<const std::int32_t>(view_of(places)), out.constants});
+                  RollingLinkOp{in, indices.contact_of_slot,
+                                View<const std::int32_t>(view_of(places)), out.constants});
   }
   exec.for_each(label, slots,
-                GatherBody<3>{indices.contact_of_slot, in.given_velocity,
-                              indices.is_local ? out.free_velocity : out.offset});
+                GatherOp<3>{indices.contact_of_slot, in.given_velocity,
+                            indices.is_local ? out.free_velocity : out.offset});
   if (indices.is_local) {
     if (indices.delassus_target.size == 0) {
       exec.copy(label, in.matrix, out.delassus);
@@ -255,23 +255,23 @@ ContactSavings fill_numbers(Exec& exec,
       scatter(in.matrix, indices.delassus_target, indices.matrix_is_unique, out.delassus);
     }
     exec.for_each(label, slots,
-                  DelassusDiagonalBody{out.delassus, indices.delassus_diagonal, out.constants});
+                  DelassusDiagonalOp{out.delassus, indices.delassus_diagonal, out.constants});
   } else {
     const View<const std::int64_t> dof_start = indices.pairs.dof_start;
     scatter(in.matrix, indices.system_target, indices.matrix_is_unique, out.system);
     scatter(in.jacobian, indices.jacobian_target, indices.jacobian_is_unique, out.jacobian);
-    exec.for_each(label, indices.dofs(), GatherBody<1>{indices.dof_of_place, in.load, out.load});
+    exec.for_each(label, indices.dofs(), GatherOp<1>{indices.dof_of_place, in.load, out.load});
     exec.for_each(
         label, indices.blocks(),
-        BlockSetupBody{dof_start, indices.diagonal_value, indices.inverse_start,
-                       indices.block_is_coupled, out.system, out.load, out.inverse, out.body_free});
+        BlockSetupOp{dof_start, indices.diagonal_value, indices.inverse_start,
+                     indices.block_is_coupled, out.system, out.load, out.inverse, out.body_free});
     exec.for_each(label, slots,
-                  ContactSetupBody{{indices.pairs, out.jacobian, indices.inverse_start, out.inverse,
-                                    choices.relaxation, out.response, out.constants},
-                                   indices.block_is_coupled,
-                                   {indices.pairs, out.jacobian, out.response, out.offset},
-                                   out.body_free,
-                                   out.free_velocity});
+                  ContactSetupOp{{indices.pairs, out.jacobian, indices.inverse_start, out.inverse,
+                                  choices.relaxation, out.response, out.constants},
+                                 indices.block_is_coupled,
+                                 {indices.pairs, out.jacobian, out.response, out.offset},
+                                 out.body_free,
+                                 out.free_velocity});
   }
   return {static_cast<std::int64_t>(left_out.value[0]),
           static_cast<std::int64_t>(left_out.value[1])};
@@ -279,7 +279,7 @@ ContactSavings fill_numbers(Exec& exec,
 
 /// One index = one contact: its constants in another precision.
 template <class To, class From>
-struct ConvertConstantsBody {
+struct ConvertConstantsOp {
   View<const ContactConstants<From>> in;
   View<ContactConstants<To>> out;
 

@@ -16,7 +16,7 @@ namespace tetwarp {
 /// One index = one contact: the diagonal metric of impulse differences, 1 / rho with the weights
 /// rho of eta.
 template <class T>
-struct ImpulseWeightsBody {
+struct ImpulseWeightsOp {
   View<const ContactConstants<T>> constants;
   View<double> weights;
 
@@ -56,7 +56,7 @@ class ContactMethods {
  public:
   /// One index = one entry: product of gradient and last step; the step was uphill where the sum is
   /// positive.
-  struct SlopeBody {
+  struct SlopeOp {
     View<const double> weights;
     View<const T> before, x, last;
     TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
@@ -65,7 +65,7 @@ class ContactMethods {
     }
   };
   /// One index = one entry: x += factor (x - last), and last becomes the old x.
-  struct MomentumBody {
+  struct MomentumOp {
     T factor;
     View<T> last, x;
     TETWARP_HD void operator()(std::int64_t i) const {
@@ -81,7 +81,7 @@ class ContactMethods {
                                   const MethodWork<T>& work)
       : pipeline_(pipeline), convergence_(convergence), work_(work.of(pipeline.island())) {
     exec().for_each("contact/sweep", pipeline_.constants().size,
-                    ImpulseWeightsBody<T>{pipeline_.constants(), work_.weights});
+                    ImpulseWeightsOp<T>{pipeline_.constants(), work_.weights});
     exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
   }
 
@@ -128,13 +128,13 @@ class ContactMethods {
       const double uphill =
           exec()
               .template sum<PlainSums<1>>("contact/mix", 0, x.size,
-                                          SlopeBody{work_.weights, work_.before, x, last})
+                                          SlopeOp{work_.weights, work_.before, x, last})
               .value[0];
       if (uphill > 0) momentum = 1;
       const double next = (1 + sqrt(1 + 4 * momentum * momentum)) / 2;
       const T factor = uphill > 0 ? T(0) : static_cast<T>((momentum - 1) / next);
       momentum = next;
-      exec().for_each("contact/mix", x.size, MomentumBody{factor, last, x});
+      exec().for_each("contact/mix", x.size, MomentumOp{factor, last, x});
       pipeline_.follow_impulses();
     }
     return convergence_.reason();

@@ -58,12 +58,12 @@ class ContactPipeline {
                                              island_.color_end - island_.color_begin};
     if (numbers_.is_local) {
       contact_sweep(exec_, colors,
-                    DelassusSweepBody<T>{numbers_.delassus, numbers_.constants, switches_, frozen,
-                                         state_.impulse});
+                    DelassusSweepOp<T>{numbers_.delassus, numbers_.constants, switches_, frozen,
+                                       state_.impulse});
     } else {
       contact_sweep(exec_, colors,
-                    BodySweepBody<T>{numbers_.bodies, numbers_.constants, switches_, frozen,
-                                     state_.impulse, state_.body_velocity});
+                    BodySweepOp<T>{numbers_.bodies, numbers_.constants, switches_, frozen,
+                                   state_.impulse, state_.body_velocity});
     }
   }
 
@@ -73,18 +73,18 @@ class ContactPipeline {
     exec_.copy("contact/sweep", constants(),
                View<ContactConstants<T>>{metric.data + island_.slot_begin, constants().size});
     if (numbers_.is_local) {
-      run_contacts(DelassusSplitMetricBody<T>{numbers_.delassus, metric});
+      run_contacts(DelassusSplitMetricOp<T>{numbers_.delassus, metric});
     } else {
-      run_contacts(BodySplitMetricBody<T>{numbers_.bodies, numbers_.block_contacts.start, metric});
+      run_contacts(BodySplitMetricOp<T>{numbers_.bodies, numbers_.block_contacts.start, metric});
     }
-    run_contacts(ContactMetricBody<T>{metric});
+    run_contacts(ContactMetricOp<T>{metric});
   }
 
   /// Solves every contact separately, all from the same velocities.
   /// @param metric  of split_metric()
   TETWARP_ANY_EXEC void split(View<const ContactConstants<T>> metric) {
     find_velocities();
-    run_contacts(ContactSplitBody<T>{metric, switches_, state_.velocity, state_.impulse});
+    run_contacts(ContactSplitOp<T>{metric, switches_, state_.velocity, state_.impulse});
   }
 
   /// Sets v to the velocities of r; required after r was changed by anything but a sweep.
@@ -92,9 +92,9 @@ class ContactPipeline {
   TETWARP_ANY_EXEC void follow_impulses() {
     if (numbers_.is_local) return;
     body_relax(exec_, island_.block_begin, island_.block_end,
-               BodyVelocityBody<T>{numbers_.block_contacts, numbers_.bodies.pairs.dof_start,
-                                   numbers_.bodies.response, state_.impulse, numbers_.body_free,
-                                   state_.body_velocity});
+               BodyVelocityOp<T>{numbers_.block_contacts, numbers_.bodies.pairs.dof_start,
+                                 numbers_.bodies.response, state_.impulse, numbers_.body_free,
+                                 state_.body_velocity});
   }
 
   /// Replaces the current body velocities by another vector, [dofs] of the whole problem.
@@ -104,12 +104,12 @@ class ContactPipeline {
   /// @param x  [dofs] of the whole problem; not the memory of v
   TETWARP_ANY_EXEC void step_bodies(View<const T> x, T relaxation) {
     body_relax(exec_, island_.block_begin, island_.block_end,
-               BodyStepBody<T>{{numbers_.system, numbers_.block_contacts, numbers_.bodies.jacobian,
-                                numbers_.load, state_.impulse, x, state_.defect},
-                               numbers_.inverse_start,
-                               numbers_.inverse,
-                               relaxation,
-                               state_.body_velocity});
+               BodyStepOp<T>{{numbers_.system, numbers_.block_contacts, numbers_.bodies.jacobian,
+                              numbers_.load, state_.impulse, x, state_.defect},
+                             numbers_.inverse_start,
+                             numbers_.inverse,
+                             relaxation,
+                             state_.body_velocity});
   }
 
   /// Residual of the current r and v. Unless `is_final`, ContactSums::magnitude stays 0 where its
@@ -119,8 +119,8 @@ class ContactPipeline {
     find_velocities();
     ContactSums sums =
         contact_residual(exec_, island_.slot_begin, island_.slot_end,
-                         ContactResidualBody<T>{numbers_.constants, switches_, state_.impulse,
-                                                state_.velocity, numbers_.free_velocity});
+                         ContactResidualOp<T>{numbers_.constants, switches_, state_.impulse,
+                                              state_.velocity, numbers_.free_velocity});
     const auto rows = 3 * static_cast<double>(island_.slot_end - island_.slot_begin);
     const bool is_needed =
         is_final ? sums.row_work > 0 : rows * sums.row_work > cancellation * sums.work;
@@ -134,15 +134,14 @@ class ContactPipeline {
     if (numbers_.is_local) {
       return exec_
           .template sum<PlainSums<1>>("contact/residual", island_.slot_begin, island_.slot_end,
-                                      DelassusMagnitudeBody<T>{numbers_.delassus, state_.impulse})
+                                      DelassusMagnitudeOp<T>{numbers_.delassus, state_.impulse})
           .value[0];
     }
     return exec_
         .template sum<PlainSums<1>>(
             "contact/residual", island_.block_begin, island_.block_end,
-            BodyMagnitudeBody<T>{numbers_.block_contacts, numbers_.bodies.pairs.dof_start,
-                                 numbers_.bodies.jacobian, numbers_.bodies.response,
-                                 state_.impulse})
+            BodyMagnitudeOp<T>{numbers_.block_contacts, numbers_.bodies.pairs.dof_start,
+                               numbers_.bodies.jacobian, numbers_.bodies.response, state_.impulse})
         .value[0];
   }
 
@@ -150,23 +149,22 @@ class ContactPipeline {
   TETWARP_ANY_EXEC double free_square() {
     return exec_
         .template sum<PlainSums<1>>("contact/residual", 3 * island_.slot_begin,
-                                    3 * island_.slot_end, SquareBody<T>{numbers_.free_velocity})
+                                    3 * island_.slot_end, SquareOp<T>{numbers_.free_velocity})
         .value[0];
   }
 
  private:
-  template <class Body>
-  TETWARP_ANY_EXEC void run_contacts(const Body& body) {
-    exec_.for_each("contact/sweep", island_.contact_count(),
-                   FromIndex<Body>{body, island_.slot_begin});
+  template <class Op>
+  TETWARP_ANY_EXEC void run_contacts(const Op& op) {
+    exec_.for_each("contact/sweep", island_.contact_count(), FromIndex<Op>{op, island_.slot_begin});
   }
   TETWARP_ANY_EXEC void find_velocities() {
     if (numbers_.is_local) {
-      run_contacts(ContactVelocityBody<DelassusView<T>, T>{numbers_.delassus, state_.impulse.data,
-                                                           state_.velocity});
-    } else {
-      run_contacts(ContactVelocityBody<BodiesView<T>, T>{numbers_.bodies, state_.body_velocity.data,
+      run_contacts(ContactVelocityOp<DelassusView<T>, T>{numbers_.delassus, state_.impulse.data,
                                                          state_.velocity});
+    } else {
+      run_contacts(ContactVelocityOp<BodiesView<T>, T>{numbers_.bodies, state_.body_velocity.data,
+                                                       state_.velocity});
     }
   }
 

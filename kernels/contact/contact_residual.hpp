@@ -148,7 +148,7 @@ TETWARP_HD double fclib_square(const ContactConstants<T>& c,
 
 /// One index = one contact: its terms, from its impulse and velocity.
 template <class T>
-struct ContactResidualBody {
+struct ContactResidualOp {
   View<const ContactConstants<T>> constants;
   ContactSwitches switches;
   View<const T> impulse;
@@ -178,7 +178,7 @@ struct ContactResidualBody {
 
 /// One index = one contact of a Delassus matrix: its term in ContactSums::magnitude.
 template <class T>
-struct DelassusMagnitudeBody {
+struct DelassusMagnitudeOp {
   DelassusView<T> delassus;
   View<const T> impulse;
 
@@ -198,7 +198,7 @@ struct DelassusMagnitudeBody {
 /// One index = one body: its term in ContactSums::magnitude, (|J|^T |r|) . (|A^-1 J^T| |r|). The
 /// sum over bodies is at least |r| . |B| |r|, since velocities are computed body by body.
 template <class T>
-struct BodyMagnitudeBody {
+struct BodyMagnitudeOp {
   BlockContacts contacts;
   View<const std::int64_t> dof_start;
   View<const T> jacobian, response, impulse;
@@ -233,7 +233,7 @@ template <class Exec, class T>
 TETWARP_ANY_EXEC ContactSums contact_residual(Exec& exec,
                                               std::int64_t first,
                                               std::int64_t last,
-                                              const ContactResidualBody<T>& body) {
+                                              const ContactResidualOp<T>& body) {
   return exec.template sum<ContactSums>("contact/residual", first, last, body);
 }
 

@@ -17,7 +17,7 @@ namespace tetwarp {
 /// D^-1, so the blocks of contacts on one block of A are divided by omega. All of A^-1 is at least
 /// D^-1 over the largest eigenvalue of D^-1 A, which is below 2 / omega if the outer iteration
 /// converges: hence the factor 1/2 of other contacts.
-struct LowerBlocksBody {
+struct LowerBlocksOp {
   View<const std::int64_t> pair_start;
   View<const ContactConstants<double>> constants;
   double relaxation;
@@ -33,13 +33,13 @@ struct LowerBlocksBody {
 };
 
 /// One index = one contact: sets a unit impulse along its normal.
-struct UnitPushBody {
+struct UnitPushOp {
   View<double> impulse;
   TETWARP_HD void operator()(std::int64_t c) const { impulse[3 * c] = 1; }
 };
 
 /// One index = one block: |b + J^T r - A v|^2, |b|^2 and |J^T r|^2 of its dofs.
-struct BalanceBody {
+struct BalanceOp {
   BlockContacts contacts;
   View<const std::int64_t> dof_start;
   View<const double> jacobian, load, impulse, defect;
@@ -63,7 +63,7 @@ struct BalanceBody {
 };
 
 /// One index = one contact: squared difference of two velocities in the weights of eta.
-struct DistanceBody {
+struct DistanceOp {
   View<const ContactConstants<double>> constants;
   const double *a, *b;  ///< the velocities, [contacts][3]
 

@@ -39,7 +39,7 @@ TETWARP_HD void invert_spd(T* a, int size) {
 
 /// One index = one block: its inverse, in place.
 template <class T>
-struct BlockInvertBody {
+struct BlockInvertOp {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> value_start;  ///< [blocks + 1], first entry of each block
   View<T> values;
@@ -52,7 +52,7 @@ struct BlockInvertBody {
 /// One index = one contact: the velocities of its blocks for unit impulses, times `relaxation`, and
 /// its own block of the Delassus matrix.
 template <class T>
-struct ContactResponseBody {
+struct ContactResponseOp {
   PairView pairs;
   View<const T> jacobian;
   View<const std::int64_t> inverse_start;
@@ -89,7 +89,7 @@ struct ContactResponseBody {
 
 /// One index = one contact: the scalar metric of its tangents, computed from its block.
 template <class T>
-struct ContactMetricBody {
+struct ContactMetricOp {
   View<ContactConstants<T>> constants;
 
   TETWARP_HD void operator()(std::int64_t c) const {

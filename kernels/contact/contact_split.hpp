@@ -15,7 +15,7 @@ namespace tetwarp {
 /// One index = one contact between bodies: P = sum over its blocks b of n_b J A^-1 J^T, with n_b
 /// the number of contacts on block b. The Delassus matrix is at most diag(P) (Cauchy-Schwarz).
 template <class T>
-struct BodySplitMetricBody {
+struct BodySplitMetricOp {
   BodiesView<T> bodies;
   View<const std::int64_t> block_start;  ///< [blocks + 1], pairs by block
   View<ContactConstants<T>> constants;
@@ -42,7 +42,7 @@ struct BodySplitMetricBody {
 /// One index = one contact of a Delassus matrix: P = its diagonal block plus the norms of the other
 /// blocks of its row. The matrix is at most diag(P) (block diagonal dominance).
 template <class T>
-struct DelassusSplitMetricBody {
+struct DelassusSplitMetricOp {
   DelassusView<T> delassus;
   View<ContactConstants<T>> constants;
 
@@ -62,7 +62,7 @@ struct DelassusSplitMetricBody {
 /// P. Rolling friction reads the impulse of its contact, which another thread may be writing, so
 /// problems with rolling friction must not use this stage.
 template <class T>
-struct ContactSplitBody {
+struct ContactSplitOp {
   View<const ContactConstants<T>> constants;
   ContactSwitches switches;
   View<const T> velocity;

@@ -183,13 +183,13 @@ TETWARP_HD bool update_contact(const ContactConstants<T>& contact,
 
 /// One index = one contact of a Delassus matrix. Contacts of one color have no block in common.
 template <class T>
-struct DelassusSweepBody {
+struct DelassusSweepOp {
   DelassusView<T> delassus;
   View<const ContactConstants<T>> constants;
   ContactSwitches switches;
   FrozenContacts<T> frozen;
   View<T> impulse;
-  bool operator==(const DelassusSweepBody&) const = default;
+  bool operator==(const DelassusSweepOp&) const = default;
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (frozen.skips(c)) return;
@@ -202,14 +202,14 @@ struct DelassusSweepBody {
 
 /// One index = one contact between bodies. Contacts of one color share no body.
 template <class T>
-struct BodySweepBody {
+struct BodySweepOp {
   BodiesView<T> bodies;
   View<const ContactConstants<T>> constants;
   ContactSwitches switches;
   FrozenContacts<T> frozen;
   View<T> impulse;
   View<T> body_velocity;
-  bool operator==(const BodySweepBody&) const = default;
+  bool operator==(const BodySweepOp&) const = default;
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (frozen.skips(c)) return;
@@ -227,7 +227,7 @@ struct BodySweepBody {
 /// One index = one contact: its velocity u, from impulses (DelassusView) or body velocities
 /// (BodiesView).
 template <class Velocities, class T>
-struct ContactVelocityBody {
+struct ContactVelocityOp {
   Velocities velocities;
   const T* cause;
   View<T> velocity;
@@ -242,18 +242,18 @@ struct ContactVelocityBody {
 /// Contacts are sorted by color, so the result equals that of a serial pass in their order.
 /// @param exec         where to run
 /// @param color_start  first contact of each color, and the end, [colors + 1]; the caller reads it
-/// @param body         DelassusSweepBody or BodySweepBody
+/// @param op         DelassusSweepOp or BodySweepOp
 /// @pre  contacts of one color do not influence each other; see host/contact/structure/color.hpp
 ///
 /// Determinism: same bits for any number of threads. Cost: per contact its row of W, or J and the
 /// responses of its blocks once each.
-template <class Exec, class Body>
+template <class Exec, class Op>
 TETWARP_ANY_EXEC void contact_sweep(Exec& exec,
                                     View<const std::int64_t> color_start,
-                                    const Body& body) {
+                                    const Op& op) {
   for (std::int64_t k = 0; k + 1 < color_start.size; ++k) {
     exec.for_each("contact/sweep", color_start[k + 1] - color_start[k],
-                  FromIndex<Body>{body, color_start[k]});
+                  FromIndex<Op>{op, color_start[k]});
   }
 }
 

@@ -87,7 +87,7 @@ void convert_system(Exec& exec,
   const SystemViews<From> in = from.views();
   const SystemViews<To> out = to.views();
   exec.for_each("contact/setup", in.constants.size,
-                ConvertConstantsBody<To, From>{in.constants, out.constants});
+                ConvertConstantsOp<To, From>{in.constants, out.constants});
   const auto one = [&](View<const From> source, View<To> target) { convert(exec, source, target); };
   one(in.free_velocity, out.free_velocity);
   one(in.offset, out.offset);

@@ -9,9 +9,9 @@
 namespace tetwarp {
 
 /// As a recorded graph; CudaExec::forget_parts() drops it.
-template <class Body>
-void contact_sweep(CudaExec& exec, View<const std::int64_t> color_start, const Body& body) {
-  exec.for_each_part(color_start, body);
+template <class Op>
+void contact_sweep(CudaExec& exec, View<const std::int64_t> color_start, const Op& op) {
+  exec.for_each_part(color_start, op);
 }
 
 }  // namespace tetwarp

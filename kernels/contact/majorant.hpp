@@ -87,7 +87,7 @@ struct TouchingNodes {
 };
 
 /// One index = one block of J: turns it into the frame of its body.
-struct TurnJacobianBody {
+struct TurnJacobianOp {
   CompliantBodies of;
   TouchingRows rows;
   View<double> turned;  ///< out
@@ -112,7 +112,7 @@ TETWARP_HD double scattered(std::int64_t i) {
 
 /// One index = one contact: its own block, the diagonals of its parts, and the start vector of the
 /// power iteration.
-struct OwnBlockBody {
+struct OwnBlockOp {
   TouchingNodes of;
   View<ContactConstants<double>> constants;  ///< in and out
   View<double> diagonal, vector;             ///< out, [parts][3]
@@ -135,7 +135,7 @@ struct OwnBlockBody {
 };
 
 /// One index = one node: J^T v of the contacts on it, with v the vector of each part.
-struct PartPushBody {
+struct PartPushOp {
   TouchingNodes of;
   View<const double> vector;  ///< [parts][3]
   View<double> push;          ///< out, [nodes][3]
@@ -149,7 +149,7 @@ struct PartPushBody {
 };
 
 /// One index = one part: D_b^-1 J z, the next vector.
-struct PartVectorBody {
+struct PartVectorOp {
   TouchingNodes of;
   View<const double> node_velocity, diagonal;
   View<double> vector;  ///< out
@@ -167,7 +167,7 @@ struct PartVectorBody {
 /// One index = one body: lambda_b from two steps of the power iteration. With z the velocities
 /// before, v = D_b^-1 J z and q = J^T v, lambda_b is about q . C q / q . z. It is at most the
 /// number of rows, three per contact.
-struct BodyScaleBody {
+struct BodyScaleOp {
   static constexpr double margin = 1.2;  ///< the estimate grows towards lambda_b
 
   CompliantBodies of;
@@ -188,7 +188,7 @@ struct BodyScaleBody {
 };
 
 /// One index = one contact: its constants, with the majorant in place of its own block.
-struct MajorantBody {
+struct MajorantOp {
   TouchingNodes of;
   View<const ContactConstants<double>> constants;
   View<const double> diagonal, scale;       ///< [parts][3]; [bodies]
@@ -208,7 +208,7 @@ struct MajorantBody {
 };
 
 /// One index = one contact: doubles its majorant.
-struct MajorantGrowBody {
+struct MajorantGrowOp {
   View<ContactConstants<double>> majorant;  ///< in and out
 
   TETWARP_HD void operator()(std::int64_t contact) const {
@@ -236,19 +236,19 @@ void set_majorants(Exec& exec, const TouchingNodes& touching, const MajorantArra
   constexpr int power_steps = 6;
   const CompliantBodies& bodies = touching.bodies;
   const std::int64_t contacts = to.constants.size, nodes = bodies.row_of_node.size;
-  exec.for_each(label, contacts, OwnBlockBody{touching, to.constants, to.diagonal, to.vector});
+  exec.for_each(label, contacts, OwnBlockOp{touching, to.constants, to.diagonal, to.vector});
   for (int n = 0;; ++n) {
-    exec.for_each(label, nodes, PartPushBody{touching, to.vector, to.push});
+    exec.for_each(label, nodes, PartPushOp{touching, to.vector, to.push});
     exec.for_each(label, 3 * nodes,
-                  NodeMoveBody{bodies, to.push, {}, n < power_steps ? to.before : to.after});
+                  NodeMoveOp{bodies, to.push, {}, n < power_steps ? to.before : to.after});
     if (n == power_steps) break;
     exec.for_each(label, touching.part_body.size,
-                  PartVectorBody{touching, to.before, to.diagonal, to.vector});
+                  PartVectorOp{touching, to.before, to.diagonal, to.vector});
   }
   exec.for_each(label, bodies.bodies.size,
-                BodyScaleBody{bodies, to.push, to.before, to.after, to.scale});
+                BodyScaleOp{bodies, to.push, to.before, to.after, to.scale});
   exec.for_each(label, contacts,
-                MajorantBody{touching, to.constants, to.diagonal, to.scale, to.majorant});
+                MajorantOp{touching, to.constants, to.diagonal, to.scale, to.majorant});
 }
 
 }  // namespace tetwarp

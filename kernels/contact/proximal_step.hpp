@@ -34,7 +34,7 @@ struct ProximalState {
 };
 
 /// One index = one contact.
-struct ProximalStepBody {
+struct ProximalStepOp {
   TouchingNodes of;
   View<const ContactConstants<double>> constants, majorant;
   ContactSwitches switches;
@@ -97,7 +97,7 @@ struct ProximalStepBody {
 };
 
 /// One index = one node: J^T (ahead - before), in frames.
-struct NodePushBody {
+struct NodePushOp {
   TouchingNodes of;
   View<const double> ahead, before;  ///< [3 contacts]
   View<double> push;                 ///< out
@@ -112,14 +112,14 @@ struct NodePushBody {
 };
 
 /// A single index, before the first step.
-struct ProximalStartBody {
+struct ProximalStartOp {
   ProximalState* state;
 
   TETWARP_HD void operator()(std::int64_t) const { *state = {}; }
 };
 
 /// A single index, after a run of steps: the momentum of the next one.
-struct ProximalDecideBody {
+struct ProximalDecideOp {
   ProximalState* state;
 
   TETWARP_HD void operator()(std::int64_t) const {

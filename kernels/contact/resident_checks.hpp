@@ -34,7 +34,7 @@ struct LargestOf {
 };
 
 /// One index = one number of several arrays: 1 where it is not finite or out of its range.
-struct RangeCheckBody {
+struct RangeCheckOp {
   static constexpr int most = 11;
   struct Entry {
     View<const double> values;
@@ -65,7 +65,7 @@ enum class Zero : std::uint8_t { no, yes, either };
 
 /// One index = one stored number of A: 1 where it has become zero or nonzero since the structure
 /// was made, and blocks or couplings depend on it.
-struct ZeroPatternBody {
+struct ZeroPatternOp {
   View<const double> system;
   View<const Zero> is_zero;
 
@@ -77,7 +77,7 @@ struct ZeroPatternBody {
 
 /// One index = one contact: scales of the checks below. [0]: largest |J|, or largest diagonal entry
 /// of W; [1]: largest of |gap_n| and |dt w_n| [m].
-struct ContactScalesBody {
+struct ContactScalesOp {
   ContactInput in;
   RowsView rows;  ///< of J, or of W
 
@@ -109,8 +109,8 @@ struct ContactScalesBody {
 
 /// One index = one contact: 1 where its rows are zero or within rounding of zero, or where its
 /// normal spring has another gap than dt w_n.
-struct ContactCheckBody {
-  ContactScalesBody scales;
+struct ContactCheckOp {
+  ContactScalesOp scales;
   const LargestOf<2>* largest;
 
   TETWARP_HD BadCount operator()(std::int64_t c) const {
@@ -138,8 +138,8 @@ struct ContactCheckBody {
 };
 
 /// One index = one row of W: 1 where an entry is larger than a positive semidefinite matrix allows.
-struct SemidefiniteCheckBody {
-  ContactScalesBody scales;
+struct SemidefiniteCheckOp {
+  ContactScalesOp scales;
   const LargestOf<2>* largest;
 
   TETWARP_HD BadCount operator()(std::int64_t row) const {
@@ -156,7 +156,7 @@ struct SemidefiniteCheckBody {
 
 /// One index = one block of A: 1 where it is not symmetric, not clearly positive definite, or of
 /// more than largest_dense_block dofs.
-struct BlockCheckBody {
+struct BlockCheckOp {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> diagonal_value;
   View<const double> system;

@@ -12,7 +12,7 @@
 namespace tetwarp {
 
 /// One index = one contact: raises its normal offset to at least -speed.
-struct RecoveryBody {
+struct RecoveryOp {
   View<const double> given;
   double speed;
   View<double> out;
@@ -26,7 +26,7 @@ struct RecoveryBody {
 
 /// One index = one place: copies its `width` numbers to the place of its item.
 template <int width>
-struct ScatterItemsBody {
+struct ScatterItemsOp {
   View<const std::int32_t> item;
   View<const double> in;
   View<double> out;
@@ -37,7 +37,7 @@ struct ScatterItemsBody {
 };
 
 /// One index = one row: out = offset + matrix x.
-struct RowResultBody {
+struct RowResultOp {
   RowsView rows;
   View<const double> values, x, offset;
   View<double> out;
@@ -73,7 +73,7 @@ TETWARP_HD double not_finite(double value) {
 }
 
 /// One index = one row of contacts.
-struct ContactResultBody {
+struct ContactResultOp {
   View<const double> impulse, velocity;
 
   TETWARP_HD ResultSums operator()(std::int64_t row) const {
@@ -82,7 +82,7 @@ struct ContactResultBody {
 };
 
 /// One index = one block of dofs.
-struct BalanceSumsBody {
+struct BalanceSumsOp {
   SystemView<double> system;
   BlockContacts contacts;
   View<const double> jacobian;  ///< by pairs

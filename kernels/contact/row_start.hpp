@@ -8,16 +8,16 @@
 namespace tetwarp {
 
 /// One index = one diagonal block: its inverse, stored at its first row of the system.
-struct DiagonalInvertBody {
+struct DiagonalInvertOp {
   View<const std::int32_t> first_row;
-  RowInvertBody<double> invert;
+  RowInvertOp<double> invert;
 
   TETWARP_HD void operator()(std::int64_t i) const { invert(first_row[i]); }
 };
 
 /// One index = one row: its velocity without contact, and its metric in the acceleration of
 /// velocities.
-struct RowStartBody {
+struct RowStartOp {
   View<const std::int32_t> system_row;  ///< [rows]
   SystemRows rows;
   View<const double> values, without_contact;  ///< of the system: A, [rows of the system][3]
@@ -34,7 +34,7 @@ struct RowStartBody {
 };
 
 /// One index = one number: adds another vector.
-struct AddNumbersBody {
+struct AddNumbersOp {
   View<const double> more;
   View<double> sum;  ///< in and out
 

@@ -60,7 +60,7 @@ struct TouchSums {
 
 /// One index = one contact. Counts are zero before. All contacts on one row store the same number
 /// 1.
-struct TouchCountBody {
+struct TouchCountOp {
   TouchListInput in;
   TouchSums out;
 
@@ -80,7 +80,7 @@ struct TouchCountBody {
 };
 
 /// One index = one body, or the end of the list: counts its nodes.
-struct BodyNodesBody {
+struct BodyNodesOp {
   TouchSums counted;
   View<CompliantBody> bodies;  ///< in, out
   View<std::int64_t> squares;  ///< out, [bodies + 1] of the numbers of nodes
@@ -101,7 +101,7 @@ struct TouchTotals {
   std::int64_t blocks, parts, nodes, node_pairs;
 };
 /// One index: the sizes of the lists.
-struct TouchTotalsBody {
+struct TouchTotalsOp {
   TouchSums counted;
   std::int64_t rows;
   View<const std::int64_t> squares;  ///< sums of those of the bodies before
@@ -115,7 +115,7 @@ struct TouchTotalsBody {
 
 /// One index = one row, or the end of the list: its node, if it is one. Pairs of nodes of one body
 /// are numbered by their first node.
-struct NodeListBody {
+struct NodeListOp {
   TouchSums counted;
   View<const std::int32_t> body_of_row;
   View<const std::int64_t> squares;  ///< sums of those of the bodies before
@@ -139,7 +139,7 @@ struct NodeListBody {
 };
 
 /// One index = one contact, or the end of the list: its blocks and parts, with the numbers of J.
-struct TouchListBody {
+struct TouchListOp {
   TouchListInput in;
   TouchSums counted;
   View<CompliantBody> bodies;                   ///< in, out: number of contacts
@@ -180,7 +180,7 @@ struct TouchListBody {
 };
 
 /// One index = one row, the end of the list of rows, or one block: lists the blocks of each row.
-struct RowTouchesBody {
+struct RowTouchesOp {
   View<const KeyValue> touches;    ///< sorted by row, then block
   View<std::int32_t> touch_start;  ///< out, [rows + 1]
   View<std::int32_t> touch;        ///< out, [blocks]

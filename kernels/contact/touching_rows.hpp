@@ -38,7 +38,7 @@ struct TouchingRows {
 };
 
 /// One index = one row: b + J^T (r - preload) - A v, in frames.
-struct RowDefectBody {
+struct RowDefectOp {
   CompliantBodies of;
   TouchingRows touching;
   SystemRows rows;
@@ -62,7 +62,7 @@ struct RowDefectBody {
 };
 
 /// One index = one row: J^T (after - before), in frames.
-struct RowPushBody {
+struct RowPushOp {
   CompliantBodies of;
   TouchingRows touching;
   View<const double> after, before;  ///< [3 contacts]
@@ -76,7 +76,7 @@ struct RowPushBody {
 };
 
 /// One index = one contact: u = J v + w.
-struct TouchVelocityBody {
+struct TouchVelocityOp {
   TouchingRows touching;
   View<const double> velocity;    ///< v, [rows][3]
   View<double> contact_velocity;  ///< out, [3 contacts]
@@ -97,14 +97,14 @@ struct TouchVelocityBody {
 };
 
 /// One index = one number: its term of d . M^-1 d.
-struct DefectSquareBody {
+struct DefectSquareOp {
   View<const double> defect, moved;  ///< d and M^-1 d
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{defect[i] * moved[i]}}; }
 };
 
 /// One index = one contact: natural_square(), and r . (u - u without impulses).
-struct TouchErrorBody {
+struct TouchErrorOp {
   View<const ContactConstants<double>> constants;
   ContactSwitches switches;
   View<const double> impulse, velocity, free_velocity;  ///< [3 contacts]

@@ -11,7 +11,7 @@ namespace tetwarp {
 
 /// One index = one entry: out = value.
 template <class T>
-struct FillBody {
+struct FillOp {
   T value;
   View<T> out;
 
@@ -20,7 +20,7 @@ struct FillBody {
 
 /// One index = one entry, converted to another precision.
 template <class To, class From>
-struct ConvertBody {
+struct ConvertOp {
   View<const From> in;
   View<To> out;
 
@@ -29,7 +29,7 @@ struct ConvertBody {
 
 /// One index = one entry: its square.
 template <class T>
-struct SquareBody {
+struct SquareOp {
   View<const T> in;
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{square_of(double{in[i]})}}; }
@@ -37,7 +37,7 @@ struct SquareBody {
 
 /// One index = one entry: 1 if it is not zero.
 template <class T>
-struct NonzeroBody {
+struct NonzeroOp {
   View<const T> in;
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{in[i] != 0 ? 1.0 : 0.0}}; }
@@ -45,7 +45,7 @@ struct NonzeroBody {
 
 /// One index = one entry: its term in the squared norm of a vector in a diagonal metric.
 template <class T>
-struct SizeBody {
+struct SizeOp {
   View<const double> weights;
   View<const T> x;
 
@@ -56,12 +56,12 @@ struct SizeBody {
 
 template <class Exec, class T>
 void fill(Exec& exec, View<T> out, T value) {
-  exec.for_each("contact/mix", out.size, FillBody<T>{value, out});
+  exec.for_each("contact/mix", out.size, FillOp<T>{value, out});
 }
 
 template <class Exec, class To, class From>
 void convert(Exec& exec, View<const From> in, View<To> out) {
-  exec.for_each("contact/mix", in.size, ConvertBody<To, From>{in, out});
+  exec.for_each("contact/mix", in.size, ConvertOp<To, From>{in, out});
 }
 
 /// View of the entries [first, last).

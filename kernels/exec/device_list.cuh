@@ -51,21 +51,21 @@ struct WritingEmit {
 };
 
 /// One index = one index of the body.
-template <class Body>
-struct AppendCountBody {
+template <class Op>
+struct AppendCountOp {
   static constexpr int resident_blocks = 1;  ///< else registers of some bodies are spilled
 
-  Body body;
+  Op op;
   View<std::int64_t> counts, tallies;  ///< out
   __device__ void operator()(std::int64_t i) const {
     CountingEmit emit;
-    body(i, emit);
+    op(i, emit);
     counts[i] = emit.values;
     tallies[i] = emit.tallied;
   }
 };
 /// Reads two ends of the sums of what indices append.
-struct AppendTotalsBody {
+struct AppendTotalsOp {
   View<const std::int64_t> sums;  ///< exclusive, of the counts and then of the tallies
   View<std::int64_t> totals;      ///< out [2] number of values, tally
 
@@ -75,25 +75,25 @@ struct AppendTotalsBody {
     totals[1] = sums[2 * count] - sums[count];
   }
 };
-template <class Body, class T>
-struct AppendWriteBody {
+template <class Op, class T>
+struct AppendWriteOp {
   static constexpr int resident_blocks = 1;  ///< else registers of some bodies are spilled
 
-  Body body;
+  Op op;
   View<const std::int64_t> first;
   View<T> values;  ///< out
   __device__ void operator()(std::int64_t i) const {
     WritingEmit<T> emit{values.data + first[i]};
-    body(i, emit);
+    op(i, emit);
   }
 };
 
 /// Writes the value of one index.
-template <class Body, class T>
-struct ListFillBody {
-  Body body;
+template <class Op, class T>
+struct ListFillOp {
+  Op op;
   View<T> values;  ///< out
-  __device__ void operator()(std::int64_t i) const { values[i] = body(i); }
+  __device__ void operator()(std::int64_t i) const { values[i] = op(i); }
 };
 
 }  // namespace tetwarp

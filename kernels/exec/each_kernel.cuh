@@ -15,31 +15,31 @@ inline dim3 each_blocks(std::int64_t count) {
   return dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads));
 }
 
-/// Minimum blocks per multiprocessor, which bounds registers per thread: Body::resident_blocks
+/// Minimum blocks per multiprocessor, which bounds registers per thread: Op::resident_blocks
 /// where the default of ptxas spills registers, else 0 for that default.
-template <class Body>
+template <class Op>
 constexpr int resident_blocks = [] {
-  if constexpr (requires { Body::resident_blocks; }) return Body::resident_blocks;
+  if constexpr (requires { Op::resident_blocks; }) return Op::resident_blocks;
   return 0;
 }();
 
-template <class Body>
-__global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
-    each_kernel(std::int64_t count, Body body) {
+template <class Op>
+__global__ void __launch_bounds__(each_threads, resident_blocks<Op>)
+    each_kernel(std::int64_t count, Op op) {
   const std::int64_t i = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
-  if (i < count) body(i);
+  if (i < count) op(i);
 }
 
 /// One index = one run of one entry.
-template <class Body>
+template <class Op>
 struct SingleRuns {
-  Body body;
+  Op op;
 
-  TETWARP_HD auto operator()(std::int64_t i) const { return body.template run<1>(i, i + 1); }
+  TETWARP_HD auto operator()(std::int64_t i) const { return op.template run<1>(i, i + 1); }
 };
 
 /// One index = one byte.
-struct ZeroBody {
+struct ZeroOp {
   View<std::uint8_t> bytes;
 
   TETWARP_HD void operator()(std::int64_t i) const { bytes[i] = 0; }
@@ -75,16 +75,16 @@ __device__ __forceinline__ std::int64_t segment_of(const Offsets& offsets, std::
   }
 }
 
-/// Calls body(segment, index in the segment, item).
+/// Calls op(segment, index in the segment, item).
 /// @tparam Offsets  View<const std::int64_t> or GroupedSums
-template <class Offsets, class Body>
-__global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
-    each_item_kernel(Offsets offsets, std::int64_t capacity, Body body) {
+template <class Offsets, class Op>
+__global__ void __launch_bounds__(each_threads, resident_blocks<Op>)
+    each_item_kernel(Offsets offsets, std::int64_t capacity, Op op) {
   const std::int64_t item = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
   const std::int64_t count = min_of(offsets[offsets.size - 1], capacity);
   if (item - threadIdx.x % 32 >= count) return;  // all lanes of the warp
   const std::int64_t segment = segment_of(offsets, min_of(item, count - 1));
-  if (item < count) body(segment, item - offsets[segment], item);
+  if (item < count) op(segment, item - offsets[segment], item);
 }
 
 }  // namespace tetwarp

@@ -51,42 +51,42 @@ class CudaExec : public DeviceCopies {
   template <class T>
   void zero(const char* label, View<T> view) {
     const auto bytes = static_cast<std::int64_t>(bytes_of<T>(view.size));
-    for_each(label, bytes, ZeroBody{{reinterpret_cast<std::uint8_t*>(view.data), bytes}});
+    for_each(label, bytes, ZeroOp{{reinterpret_cast<std::uint8_t*>(view.data), bytes}});
   }
-  /// Calls body(i) for i in [0, count), in any order.
-  template <class Body>
-  void for_each(const char* label, std::int64_t count, const Body& body) {
+  /// Calls op(i) for i in [0, count), in any order.
+  template <class Op>
+  void for_each(const char* label, std::int64_t count, const Op& op) {
     if (count == 0) return;
-    enqueue(label, each_kernel<Body>, each_blocks(count), each_threads, 0, count, body);
+    enqueue(label, each_kernel<Op>, each_blocks(count), each_threads, 0, count, op);
   }
-  template <class Body>
-  void for_runs(const char* label, std::int64_t count, const Body& body) {
-    for_each(label, count, SingleRuns<Body>{body});
+  template <class Op>
+  void for_runs(const char* label, std::int64_t count, const Op& op) {
+    for_each(label, count, SingleRuns<Op>{op});
   }
-  template <class Body>
-  void once(const char* label, const Body& body) {
-    for_each(label, 1, body);
+  template <class Op>
+  void once(const char* label, const Op& op) {
+    for_each(label, 1, op);
   }
-  /// Calls body(i) for i in [part_start[k], part_start[k + 1]), one part after the other: a CUDA
+  /// Calls op(i) for i in [part_start[k], part_start[k + 1]), one part after the other: a CUDA
   /// graph, recorded at the first call and launched again after it. Not measured.
   /// @param part_start  in memory of the host
-  template <class Body>
-  void for_each_part(View<const std::int64_t> part_start, const Body& body) {
-    part_graphs_.launch(stream(), part_start, body);
+  template <class Op>
+  void for_each_part(View<const std::int64_t> part_start, const Op& op) {
+    part_graphs_.launch(stream(), part_start, op);
   }
   /// Drops the recorded graphs; to be called when the arrays they read have moved.
   void forget_parts() { part_graphs_.clear(); }
-  /// Calls body(s, item - offsets[s], item) for every item of segments s, which are the ranges
+  /// Calls op(s, item - offsets[s], item) for every item of segments s, which are the ranges
   /// [offsets[s], offsets[s + 1]), in any order. Items from `capacity` on are left out.
   /// @tparam Offsets  View<const std::int64_t> or GroupedSums
-  template <class Offsets, class Body>
+  template <class Offsets, class Op>
   void for_each_item(const char* label,
                      const Offsets& offsets,
                      std::int64_t capacity,
-                     const Body& body) {
+                     const Op& op) {
     if (capacity == 0) return;
-    enqueue(label, each_item_kernel<Offsets, Body>, each_blocks(capacity), each_threads, 0, offsets,
-            capacity, body);
+    enqueue(label, each_item_kernel<Offsets, Op>, each_blocks(capacity), each_threads, 0, offsets,
+            capacity, op);
   }
 
   /// Memory for sums of so many terms: launches that are recorded must not take it.
@@ -94,52 +94,49 @@ class CudaExec : public DeviceCopies {
   void reserve_sums(std::int64_t terms) {
     sums_.reserve(runs_of(terms) * static_cast<std::int64_t>(sizeof(Sum)));
   }
-  /// Sum of body(i) for i in [first, last); synchronizes.
-  template <class Sum, class Body>
-  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
+  /// Sum of op(i) for i in [first, last); synchronizes.
+  template <class Sum, class Op>
+  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Op& op) {
     if (first == last) return {};
     total_.reserve(sizeof(Sum));
     Sum* const total = reinterpret_cast<Sum*>(total_.view(0).data);
-    sum_to(label, first, last, body, total);
+    sum_to(label, first, last, op, total);
     return load(total);
   }
   /// As sum(), without a wait. Not measured: events would take as long as the launches.
   /// @param out  in memory of the device
-  template <class Sum, class Body>
-  void sum_to(const char*, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+  template <class Sum, class Op>
+  void sum_to(const char*, std::int64_t first, std::int64_t last, const Op& op, Sum* out) {
     const std::int64_t runs = runs_of(last - first);
     reserve_sums<Sum>(last - first);
     const View<Sum> sums = {reinterpret_cast<Sum*>(sums_.view(0).data), runs};
-    if (runs > 0) launch_sums(first, last, sum_run, body, sums);
+    if (runs > 0) launch_sums(first, last, sum_run, op, sums);
     launch_sums(0, runs, runs, ReadySums<Sum>{sums}, View<Sum>{out, 1});
   }
-  template <class Sum, class Body>
+  template <class Sum, class Op>
   void sum_runs_to(
-      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
-    sum_to(label, first, last, SingleRuns<Body>{body}, out);
+      const char* label, std::int64_t first, std::int64_t last, const Op& op, Sum* out) {
+    sum_to(label, first, last, SingleRuns<Op>{op}, out);
   }
-  /// Sums body(i) for i in [0, count), and calls body.finish(total, k) for k in [0, sum_group).
+  /// Sums op(i) for i in [0, count), and calls op.finish(total, k) for k in [0, sum_group).
   /// A body with a constant `lanes` is called by so many lanes together.
   /// @pre sums has room for `count` counts, in groups of sum_group / lanes
-  template <class Body>
-  void grouped_scan(const char* label,
-                    std::int64_t count,
-                    const Body& body,
-                    const GroupedSums& sums) {
+  template <class Op>
+  void grouped_scan(const char* label, std::int64_t count, const Op& op, const GroupedSums& sums) {
     unsigned* const own_ticket = ticket();
     const dim3 blocks(static_cast<unsigned>(group_count(count, sums.shift)));
-    enqueue(label, grouped_scan_kernel<Body>, blocks, sum_group, 0, count, body, sums, own_ticket);
+    enqueue(label, grouped_scan_kernel<Op>, blocks, sum_group, 0, count, op, sums, own_ticket);
   }
   void exclusive_scan(const char* label, View<std::int64_t> values) {
     timed(label, [&] { cuda_exclusive_scan(stream(), scratch_, values); });
   }
 
-  /// Replaces the list by what body(i, emit) appends; see CpuExec::append(). Runs the body twice:
+  /// Replaces the list by what op(i, emit) appends; see CpuExec::append(). Runs the body twice:
   /// to count, and to write. Waits for the counts.
-  template <class Body, class T>
+  template <class Op, class T>
   void append(const char* label,
               std::int64_t count,
-              const Body& body,
+              const Op& op,
               DeviceList<T>& list,
               std::int64_t most = unlimited) {
     list.clear();
@@ -147,23 +144,23 @@ class CudaExec : public DeviceCopies {
     list_sums_.resize(2 * count + 1);
     list_totals_.resize(2);
     std::int64_t* const sums = list_sums_.view().data;
-    for_each(label, count, AppendCountBody<Body>{body, {sums, count}, {sums + count, count}});
+    for_each(label, count, AppendCountOp<Op>{op, {sums, count}, {sums + count, count}});
     exclusive_scan(label, list_sums_.view());
-    for_each(label, 1, AppendTotalsBody{list_sums_.view(), list_totals_.view()});
+    for_each(label, 1, AppendTotalsOp{list_sums_.view(), list_totals_.view()});
     std::int64_t totals[2];
     get(View<const std::int64_t>(list_totals_.view()), totals);
     check_count(totals[0], most);
     list.tally_ = totals[1];
     list.set_size(totals[0]);
     for_each(label, list.size_ == 0 ? 0 : count,
-             AppendWriteBody<Body, T>{body, list_sums_.view(), list.values()});
+             AppendWriteOp<Op, T>{op, list_sums_.view(), list.values()});
   }
-  /// Replaces the list by body(i) for i in [0, count).
-  template <class Body, class T>
-  void fill(const char* label, std::int64_t count, const Body& body, DeviceList<T>& list) {
+  /// Replaces the list by op(i) for i in [0, count).
+  template <class Op, class T>
+  void fill(const char* label, std::int64_t count, const Op& op, DeviceList<T>& list) {
     list.clear();
     list.set_size(count);
-    for_each(label, count, ListFillBody<Body, T>{body, list.values()});
+    for_each(label, count, ListFillOp<Op, T>{op, list.values()});
   }
   /// Sorts by cell, of which the lowest `cell_bits` bits count; stable.
   void sort_pairs(const char* label,

@@ -44,10 +44,10 @@ __device__ __forceinline__ FourLanes four_lanes() {
   return {lane % 4, 15u << (lane & ~3)};
 }
 
-/// Lanes per item: Body::lanes, else one.
-template <class Body>
+/// Lanes per item: Op::lanes, else one.
+template <class Op>
 constexpr int lanes_of = [] {
-  if constexpr (requires { Body::lanes; }) return Body::lanes;
+  if constexpr (requires { Op::lanes; }) return Op::lanes;
   return 1;
 }();
 

@@ -62,26 +62,26 @@ __device__ __forceinline__ std::int64_t sum_groups(std::int64_t* groups,
   return total;
 }
 
-/// Sums body(i) for i in [0, count), then calls body.finish(total, k) for k in [0, sum_group). A
-/// body with a constant `lanes` is called by four lanes as body(i, FourLanes).
+/// Sums op(i) for i in [0, count), then calls op.finish(total, k) for k in [0, sum_group). A
+/// body with a constant `lanes` is called by four lanes as op(i, FourLanes).
 ///
 /// Blocks: one per group. Threads: sum_group. No block waits for another.
 /// @param sums    of sum_group / lanes counts per group
 /// @param ticket  zero; number of blocks that have ended, zero again afterwards
-template <class Body>
-__global__ void __launch_bounds__(sum_group, resident_blocks<Body>)
-    grouped_scan_kernel(std::int64_t count, Body body, GroupedSums sums, unsigned* ticket) {
-  constexpr int lanes = lanes_of<Body>;
+template <class Op>
+__global__ void __launch_bounds__(sum_group, resident_blocks<Op>)
+    grouped_scan_kernel(std::int64_t count, Op op, GroupedSums sums, unsigned* ticket) {
+  constexpr int lanes = lanes_of<Op>;
   __shared__ std::int64_t of_warp[sum_group / 32];
   __shared__ bool is_last;
   const int thread = static_cast<int>(threadIdx.x);
   const std::int64_t i = std::int64_t{blockIdx.x} * (sum_group / lanes) + thread / lanes;
   std::int64_t mine = 0;
   if constexpr (lanes == 1) {
-    if (i < count) mine = body(i);
+    if (i < count) mine = op(i);
   } else {
     const FourLanes four = four_lanes();
-    const std::int64_t value = i < count ? body(i, four) : 0;
+    const std::int64_t value = i < count ? op(i, four) : 0;
     if (four.lane == 0) mine = value;
   }
   std::int64_t total = 0;
@@ -99,7 +99,7 @@ __global__ void __launch_bounds__(sum_group, resident_blocks<Body>)
   __threadfence();
   total = sum_groups(sums.groups.data, std::int64_t{gridDim.x}, of_warp);
   if (thread == 0) *ticket = 0;
-  body.finish(total, thread);
+  op.finish(total, thread);
 }
 
 }  // namespace tetwarp

@@ -147,22 +147,20 @@ class IslandExec {
   /// The thread's number within the team.
   __device__ static std::int64_t first() { return Team::first(); }
 
-  template <class Body>
-  __device__ __forceinline__ void for_each(const char*,
-                                           std::int64_t count,
-                                           const Body& body) const {
-    for (std::int64_t i = first(); i < count; i += Team::size()) body(i);
+  template <class Op>
+  __device__ __forceinline__ void for_each(const char*, std::int64_t count, const Op& op) const {
+    for (std::int64_t i = first(); i < count; i += Team::size()) op(i);
     Team::wait();
   }
-  template <class Body>
+  template <class Op>
   __device__ __forceinline__ void for_runs(const char* label,
                                            std::int64_t count,
-                                           const Body& body) const {
-    for_each(label, count, [&](std::int64_t i) { body.template run<1>(i, i + 1); });
+                                           const Op& op) const {
+    for_each(label, count, [&](std::int64_t i) { op.template run<1>(i, i + 1); });
   }
-  template <class Body>
-  __device__ __forceinline__ void once(const char*, const Body& body) const {
-    if (first() == 0) body(0);
+  template <class Op>
+  __device__ __forceinline__ void once(const char*, const Op& op) const {
+    if (first() == 0) op(0);
     Team::wait();
   }
   /// work(lane) by the lanes of one warp.
@@ -197,22 +195,22 @@ class IslandExec {
   __device__ __forceinline__ void copy(const char* label, View<const T> from, View<T> to) const {
     for_each(label, from.size, [&](std::int64_t i) { to[i] = from[i]; });
   }
-  template <class Sum, class Body>
+  template <class Sum, class Op>
   __device__ __forceinline__ Sum
-  sum(const char*, std::int64_t begin, std::int64_t end, const Body& body) {
-    return begin == end ? Sum{} : team_.template sum<Sum>(begin, end, body);
+  sum(const char*, std::int64_t begin, std::int64_t end, const Op& op) {
+    return begin == end ? Sum{} : team_.template sum<Sum>(begin, end, op);
   }
-  template <class Sum, class Body>
+  template <class Sum, class Op>
   __device__ __forceinline__ void sum_to(
-      const char*, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) {
-    const Sum total = team_.template sum<Sum>(begin, end, body);
+      const char*, std::int64_t begin, std::int64_t end, const Op& op, Sum* out) {
+    const Sum total = team_.template sum<Sum>(begin, end, op);
     if (first() == 0) *out = total;
     Team::wait();
   }
-  template <class Sum, class Body>
+  template <class Sum, class Op>
   __device__ __forceinline__ void sum_runs_to(
-      const char* label, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) {
-    const auto term = [&](std::int64_t i) { return body.template run<1>(i, i + 1); };
+      const char* label, std::int64_t begin, std::int64_t end, const Op& op, Sum* out) {
+    const auto term = [&](std::int64_t i) { return op.template run<1>(i, i + 1); };
     sum_to<Sum>(label, begin, end, term, out);
   }
 

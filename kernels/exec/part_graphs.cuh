@@ -18,18 +18,18 @@ namespace tetwarp {
 /// One stage: a launch per part.
 class PartGraph {
  public:
-  template <class Body>
-  PartGraph(cudaStream_t stream, View<const std::int64_t> part_start, const Body& body) {
+  template <class Op>
+  PartGraph(cudaStream_t stream, View<const std::int64_t> part_start, const Op& op) {
     // The first use of a kernel loads it, and loading must not happen while the graph is recorded.
     cudaFuncAttributes attributes;
     check_cuda(cudaFuncGetAttributes(&attributes,
-                                     reinterpret_cast<const void*>(&each_kernel<FromIndex<Body>>)),
+                                     reinterpret_cast<const void*>(&each_kernel<FromIndex<Op>>)),
                "cudaFuncGetAttributes");
     StreamCapture capture(stream);
     for (std::int64_t k = 0; k + 1 < part_start.size; ++k) {
       const std::int64_t count = part_start[k + 1] - part_start[k];
-      launch(stream, each_kernel<FromIndex<Body>>, each_blocks(count), dim3(each_threads), 0, count,
-             FromIndex<Body>{body, part_start[k]});
+      launch(stream, each_kernel<FromIndex<Op>>, each_blocks(count), dim3(each_threads), 0, count,
+             FromIndex<Op>{op, part_start[k]});
     }
     check_cuda(cudaGraphInstantiate(&graph_, capture.end(), 0), "cudaGraphInstantiate");
   }
@@ -49,14 +49,14 @@ class PartGraph {
 class PartGraphs {
  public:
   /// @param part_start  in memory of the host
-  template <class Body>
-  void launch(cudaStream_t stream, View<const std::int64_t> part_start, const Body& body) {
+  template <class Op>
+  void launch(cudaStream_t stream, View<const std::int64_t> part_start, const Op& op) {
     auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) {
-      const Body* const recorded = std::any_cast<Body>(&known.body);
-      return known.part_start == part_start && recorded != nullptr && *recorded == body;
+      const Op* const recorded = std::any_cast<Op>(&known.op);
+      return known.part_start == part_start && recorded != nullptr && *recorded == op;
     });
     if (entry == entries_.end()) {
-      entries_.push_back({part_start, body, std::make_unique<PartGraph>(stream, part_start, body)});
+      entries_.push_back({part_start, op, std::make_unique<PartGraph>(stream, part_start, op)});
       entry = entries_.end() - 1;
     }
     entry->graph->launch_on(stream);

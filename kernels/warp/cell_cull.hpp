@@ -56,7 +56,7 @@ struct PlaneVerdict {
 /// One item = one candidate pair; any order. Cells of a tetrahedron are numbered i fastest.
 /// @tparam Verdict  PlaneVerdict, or MaskVerdict of corner_mask.hpp
 template <class Verdict>
-struct CellCullBody {
+struct CellCullOp {
   View<const TetSetup> setups;
   Verdict verdict;
   CullSwitches switches;
@@ -88,7 +88,7 @@ struct CellCullBody {
 /// Conservative: rounding neither rejects nor accepts wrongly, so culling never changes the output.
 /// @param exec          where to run
 /// @param setups        from tet_setup, shape [tet_count]
-/// @param verdict       see CellCullBody
+/// @param verdict       see CellCullOp
 /// @param pair_offsets  first candidate pair of each tetrahedron, shape [tet_count + 1]
 /// @param switches      which verdicts are used
 /// @param frame         the output
@@ -108,7 +108,7 @@ void cell_cull(Exec& exec,
                const OutputFrame& frame,
                View<CellPair> pairs) {
   exec.for_each_item("warp/cull", pair_offsets, pairs.size,
-                     CellCullBody<Verdict>{setups, verdict, switches, frame, pairs});
+                     CellCullOp<Verdict>{setups, verdict, switches, frame, pairs});
 }
 
 }  // namespace tetwarp

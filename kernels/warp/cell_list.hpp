@@ -23,9 +23,9 @@ TETWARP_HD void add_to(const SpreadCounter& counter, std::int64_t index, std::in
 
 /// One item = one candidate pair; any order. Culls, and counts the pairs of each cell.
 template <class Verdict>
-struct CellCountBody {
+struct CellCountOp {
   static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
-  CellCullBody<Verdict> cull;
+  CellCullOp<Verdict> cull;
   View<std::uint32_t> places;       ///< out, of pairs that are not rejected: number in their cell
   View<std::uint32_t> cell_counts;  ///< in and out
 
@@ -39,7 +39,7 @@ struct CellCountBody {
 struct StayingPairs {
   PairList before;
   View<const std::uint8_t> moved;  ///< per tetrahedron; size 0: not an update, nothing stays
-  View<std::uint32_t> counts;      ///< out of CellStayBody, twice the number of pairs that stay,
+  View<std::uint32_t> counts;      ///< out of CellStayOp, twice the number of pairs that stay,
                                    ///< plus 1 where one leaves; shape [cell_count]
 
   TETWARP_HD bool is_update() const { return moved.size > 0; }
@@ -53,7 +53,7 @@ struct StayingPairs {
 
 /// One index = one cell; any order. Counts the pairs of the step before whose tetrahedron has not
 /// moved.
-struct CellStayBody {
+struct CellStayOp {
   StayingPairs staying;
   View<std::uint32_t> cell_counts;  ///< out
 
@@ -70,7 +70,7 @@ struct CellStayBody {
 };
 
 /// One index = one cell; the count that is summed. The last thread stores the number of all pairs.
-struct CellSumBody {
+struct CellSumOp {
   View<const std::uint32_t> cell_counts;
   View<std::int64_t> pair_count;
 
@@ -82,7 +82,7 @@ struct CellSumBody {
 
 /// One index = one candidate pair, and one cell of an update; any order. Copies pairs to the part
 /// of their cell in `placed`: those that stay first.
-struct CellScatterBody {
+struct CellScatterOp {
   GroupedSums candidate_sums;
   View<const CellPair> candidates;
   View<const std::uint32_t> places;
@@ -110,7 +110,7 @@ struct CellScatterBody {
 
 /// One index = one pair, and one cell or one past the last; any order. Sorts the pairs of each cell
 /// by tetrahedron, as many steps per pair as its cell has pairs, and sets the cell's range.
-struct CellOrderBody {
+struct CellOrderOp {
   GroupedSums cells;
   View<const CellPair> placed;
   StayingPairs staying;
@@ -190,22 +190,22 @@ struct CellListMemory {
 template <class Exec, class Verdict>
 void cell_list(Exec& exec,
                const GroupedSums& candidate_sums,
-               CellCullBody<Verdict> cull,
+               CellCullOp<Verdict> cull,
                const CellListMemory& memory,
-               CellOrderBody order,
+               CellOrderOp order,
                View<std::int64_t> list_size) {
   const std::int64_t cells = memory.cells.size - 1;
   if (order.staying.is_update()) {
-    exec.for_each("warp/cull", cells, CellStayBody{order.staying, memory.cell_counts});
+    exec.for_each("warp/cull", cells, CellStayOp{order.staying, memory.cell_counts});
   }
   cull.pairs = memory.candidates;
   exec.for_each_item("warp/cull", candidate_sums, memory.candidates.size,
-                     CellCountBody<Verdict>{cull, memory.places, memory.cell_counts});
-  exec.grouped_scan("warp/cull", cells, CellSumBody{memory.cell_counts, list_size}, memory.cells);
+                     CellCountOp<Verdict>{cull, memory.places, memory.cell_counts});
+  exec.grouped_scan("warp/cull", cells, CellSumOp{memory.cell_counts, list_size}, memory.cells);
   const std::int64_t stay_cells = order.staying.is_update() ? cells : 0;
   exec.for_each("warp/cull", max_of(memory.candidates.size, stay_cells),
-                CellScatterBody{candidate_sums, memory.candidates, memory.places, order.staying,
-                                memory.cells, memory.placed});
+                CellScatterOp{candidate_sums, memory.candidates, memory.places, order.staying,
+                              memory.cells, memory.placed});
   order.cells = memory.cells;
   order.placed = memory.placed;
   exec.for_each("warp/cull", max_of(memory.placed.size, cells + 1), order);

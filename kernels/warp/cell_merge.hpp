@@ -12,7 +12,7 @@ namespace tetwarp {
 
 /// One index = one cell; any order. A cell is touched if a moved tetrahedron has a pair with it in
 /// the previous step or in this one.
-struct CellTouchBody {
+struct CellTouchOp {
   PairList before;
   PairList fresh;
   View<const std::uint8_t> moved;
@@ -36,7 +36,7 @@ struct CellTouchBody {
 };
 
 /// One index = one cell; any order. Marks cells that are touched in at least one of two steps.
-struct CellEverTouchedBody {
+struct CellEverTouchedOp {
   View<const std::uint8_t> now;
   View<const std::uint8_t> before;
   View<std::uint8_t> touched;
@@ -46,7 +46,7 @@ struct CellEverTouchedBody {
 
 /// One index = one cell, or one past the last; any order. Merges the cell's pairs of two lists,
 /// which are sorted by tetrahedron.
-struct CellMergeBody {
+struct CellMergeOp {
   PairList before;
   PairList fresh;
   View<const std::uint8_t> moved;
@@ -98,7 +98,7 @@ struct CellMergeBody {
 /// @param pair_count     out, number of pairs including dropped ones, shape [1]
 /// @param pair_offsets   scratch, shape [cell_count + 1]
 /// @param ranges         out, shape [cell_count + 1]
-/// @param touched        out, 1 for touched cells, see CellTouchBody, shape [cell_count]
+/// @param touched        out, 1 for touched cells, see CellTouchOp, shape [cell_count]
 /// @param touched_count  the number of touched cells is added to it, shape [1]
 /// @pre both lists are sorted by cell, then tetrahedron; `before` has the pairs of all tetrahedra
 ///
@@ -116,10 +116,10 @@ void cell_merge(Exec& exec,
                 View<std::uint8_t> touched,
                 View<std::int64_t> touched_count) {
   exec.for_each("warp/cull", touched.size,
-                CellTouchBody{before, fresh, moved, touched, pair_offsets, touched_count});
+                CellTouchOp{before, fresh, moved, touched, pair_offsets, touched_count});
   exec.exclusive_scan("warp/cull", pair_offsets);
   exec.for_each("warp/cull", ranges.size,
-                CellMergeBody{before, fresh, moved, pair_offsets, pairs, pair_count, ranges});
+                CellMergeOp{before, fresh, moved, pair_offsets, pairs, pair_count, ranges});
 }
 
 }  // namespace tetwarp

@@ -46,7 +46,7 @@ TETWARP_HD std::int64_t lower_bound_of_cell(View<const CellPair> pairs,
 }
 
 /// One index = one cell; any order.
-struct CellRangeBody {
+struct CellRangeOp {
   View<const CellPair> pairs;
   View<const std::int64_t> pair_count;
   View<CellRange> ranges;
@@ -78,7 +78,7 @@ struct CellRangeBody {
 /// Sets the range of every cell. The CPU's executor has a faster overload
 /// (host/warp/cpu/cell_cull_cpu.hpp).
 template <class Exec>
-void cell_ranges(Exec& exec, const CellRangeBody& body) {
+void cell_ranges(Exec& exec, const CellRangeOp& body) {
   exec.for_each("warp/cull", body.ranges.size, body);
 }
 
@@ -108,7 +108,7 @@ void cell_pairs(Exec& exec,
   while (frame.cell_count() >> cell_bits != 0) ++cell_bits;
   exec.select_valid("warp/cull", candidates, candidate_count, pairs, pair_count);
   exec.sort_pairs("warp/cull", pairs, pair_count, cell_bits);
-  cell_ranges(exec, CellRangeBody{pairs, pair_count, ranges, accepted_count});
+  cell_ranges(exec, CellRangeOp{pairs, pair_count, ranges, accepted_count});
 }
 
 }  // namespace tetwarp

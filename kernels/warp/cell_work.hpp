@@ -68,7 +68,7 @@ TETWARP_HD bool has_constant_of(const SourceView<T>& source, std::int64_t a, std
 /// the output cannot. Cost: one box and one byte per pair, up to the first that is not uniform.
 /// Source: ours.
 template <class T>
-struct CellWorkBody {
+struct CellWorkOp {
   RasterJob<T> job;    ///< its cell_work is what this sets, or size 0
   UniformMap uniform;  ///< of the job's source, or of its coefficients where it has some; empty: no
                        ///< cell is filled
@@ -109,7 +109,7 @@ struct CellWorkBody {
 
 /// Sets the work of all cells.
 template <class Exec, class T>
-void cell_work(Exec& exec, const CellWorkBody<T>& body) {
+void cell_work(Exec& exec, const CellWorkOp<T>& body) {
   exec.for_each("warp/raster", body.work.size, body);
 }
 

@@ -18,7 +18,7 @@ constexpr int max_faces = 16;
 constexpr int max_corners = 32;
 constexpr int max_edges = 96;
 
-/// A convex body. Positions relative to the centre of a voxel [voxel].
+/// A convex body. Positions relative to the center of a voxel [voxel].
 struct ConvexPart {
   int corner_count;
   int edge_count;
@@ -181,7 +181,7 @@ TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
 enum class BoxPlace { outside, inside, across };
 
 /// @param x       the voxel [frame]
-/// @param height  out, distance of its centre from the planes of the faces, positive inside
+/// @param height  out, distance of its center from the planes of the faces, positive inside
 TETWARP_HD BoxPlace place_of_box(const TetSetup& tet, const int* x, double* height) {
   const double from[3] = {static_cast<double>(x[0] - tet.anchor[0]),
                           static_cast<double>(x[1] - tet.anchor[1]),
@@ -219,7 +219,7 @@ TETWARP_HD_RARE const ConvexPart* part_in_tet(const TetSetup& tet,
 }
 
 /// Sets a tetrahedron's box to all voxels of a frame whose own boxes it intersects; set_box()
-/// includes only those whose centres may be inside.
+/// includes only those whose centers may be inside.
 TETWARP_HD void widen_box(const TetNodes& tet, const OutputFrame& frame, TetSetup& setup) {
   constexpr std::int64_t half = quanta_per_voxel / 2;
   for (int axis = 0; axis < 3; ++axis) {

@@ -53,7 +53,7 @@ constexpr std::int64_t most_corners(std::int64_t pairs) {
 /// than fewest_culled_cells candidate pairs.
 /// @tparam Offsets  View<const std::int64_t> or GroupedSums
 template <class Offsets>
-struct CornerCountBody {
+struct CornerCountOp {
   View<const TetSetup> setups;
   Offsets pair_offsets;
   View<std::int64_t> counts;  ///< out
@@ -69,7 +69,7 @@ struct CornerCountBody {
 };
 
 /// One item = one corner of a cell of one tetrahedron's box, numbered i fastest; any order.
-struct CornerMaskBody {
+struct CornerMaskOp {
   View<const TetSetup> setups;
   View<std::uint16_t> masks;
 
@@ -100,7 +100,7 @@ void corner_mask(Exec& exec,
                  View<const TetSetup> setups,
                  const Offsets& corner_offsets,
                  View<std::uint16_t> masks) {
-  exec.for_each_item("warp/mask", corner_offsets, masks.size, CornerMaskBody{setups, masks});
+  exec.for_each_item("warp/mask", corner_offsets, masks.size, CornerMaskOp{setups, masks});
 }
 
 /// Rejects a cell if the masks of its eight corners share an outside bit, and accepts it if all

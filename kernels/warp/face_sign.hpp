@@ -1,5 +1,5 @@
 /// @file face_sign.hpp
-/// Exact test on which side of a face a voxel centre lies, by 128-bit integers on quantized nodes.
+/// Exact test on which side of a face a voxel center lies, by 128-bit integers on quantized nodes.
 /// Points on a face are inside: tetrahedra are closed.
 ///
 /// Bounds: with nodes of a tetrahedron at most 2^40 quanta (2^20 voxels) apart, a normal component
@@ -86,7 +86,7 @@ TETWARP_HD Int128 turn_inward(ExactPlane<>& plane, const TetNodes& tet, int face
   return -value;
 }
 
-/// True when voxel centre (i, j, k) [frame] is on or inside every face; false for flat tetrahedra.
+/// True when voxel center (i, j, k) [frame] is on or inside every face; false for flat tetrahedra.
 /// With `strictly`, a voxel on a face is not inside.
 TETWARP_HD_RARE bool is_inside_exact(
     const TetNodes& tet, int i, int j, int k, bool strictly = false) {

@@ -41,7 +41,7 @@ TETWARP_HD Node quantized(const IndexFromWorld& map,
 }
 
 /// One index = one node; any order.
-struct NodeQuantizeBody {
+struct NodeQuantizeOp {
   IndexFromWorld map;
   std::int64_t frame[3];
   View<const double> positions;
@@ -69,7 +69,7 @@ void node_quantize(Exec& exec,
                    const std::int64_t* frame,
                    View<const double> positions,
                    View<Node> nodes) {
-  NodeQuantizeBody body{map, {frame[0], frame[1], frame[2]}, positions, nodes};
+  NodeQuantizeOp body{map, {frame[0], frame[1], frame[2]}, positions, nodes};
   exec.for_each("warp/setup", nodes.size, body);
 }
 

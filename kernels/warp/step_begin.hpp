@@ -13,8 +13,8 @@ namespace tetwarp {
 
 /// One index = one node, one counter and one cell; any order. Rounds the nodes' positions, finds
 /// those that differ from the step before, and clears what the step counts in.
-struct StepBeginBody {
-  NodeQuantizeBody quantize;
+struct StepBeginOp {
+  NodeQuantizeOp quantize;
   View<const Node> before;          ///< size 0: unknown
   View<std::uint8_t> node_moved;    ///< out where `before` is known
   View<std::int64_t> counters;      ///< set to zero
@@ -26,7 +26,7 @@ struct StepBeginBody {
   TETWARP_HD void operator()(std::int64_t i) const {
     if (i < quantize.nodes.size) {
       quantize(i);
-      if (before.size > 0) MeshNodeMovedBody{before, quantize.nodes, node_moved}(i);
+      if (before.size > 0) MeshNodeMovedOp{before, quantize.nodes, node_moved}(i);
     }
     if (i < counters.size) counters[i] = 0;
     if (i < cell_counts.size) cell_counts[i] = 0;
@@ -36,9 +36,9 @@ struct StepBeginBody {
 /// One index = one tetrahedron: its setup; the count that is summed is that of its candidate pairs.
 /// @tparam widens  whether intensity is conservative
 template <bool widens>
-struct TetCountBody {
+struct TetCountOp {
   static constexpr int resident_blocks = 1;  ///< allows all registers: no spills
-  TetSetupBody setup;
+  TetSetupOp setup;
   View<const std::uint8_t> node_moved;  ///< size 0: unknown
   View<std::uint8_t> moved;             ///< out where node_moved is known
   bool is_update;                       ///< only moved tetrahedra are set up and have candidates
@@ -50,8 +50,8 @@ struct TetCountBody {
     if (is_update && !has_moved) return 0;
     setup(t);
     if constexpr (widens) {
-      TetWidenBody{setup.tets,  setup.deformed, setup.rest,       {},
-                   setup.frame, setup.setups,   setup.pair_counts}(t);
+      TetWidenOp{setup.tets,  setup.deformed, setup.rest,       {},
+                 setup.frame, setup.setups,   setup.pair_counts}(t);
     }
     return setup.pair_counts[t];
   }
@@ -78,10 +78,10 @@ struct TetCountBody {
 /// The same for meshes without hexahedra whose intensity is not conservative. Four lanes share a
 /// tetrahedron: each computes the plane of a face, three of them an axis of its box and a row of
 /// its map.
-struct TetLanesBody {
+struct TetLanesOp {
   static constexpr int lanes = 4;
   static constexpr int resident_blocks = 3;  ///< leaves 80 registers per thread: no spills
-  TetCountBody<false> one;
+  TetCountOp<false> one;
 
   template <class Lanes>
   TETWARP_HD std::int64_t operator()(std::int64_t t, const Lanes& four) const {
@@ -103,7 +103,7 @@ struct TetLanesBody {
   TETWARP_HD void finish(std::int64_t total, int k) const { one.finish(total, k); }
 
  private:
-  /// As TetSetupBody::set_up(), but sets nothing for other classes than regular and inverted.
+  /// As TetSetupOp::set_up(), but sets nothing for other classes than regular and inverted.
   /// @param pairs  out, cells of the box
   template <class Lanes>
   TETWARP_HD TetClass

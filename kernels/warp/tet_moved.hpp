@@ -11,7 +11,7 @@
 namespace tetwarp {
 
 /// One index = one node; any order.
-struct MeshNodeMovedBody {
+struct MeshNodeMovedOp {
   View<const Node> before;
   View<const Node> now;
   View<std::uint8_t> moved;
@@ -24,7 +24,7 @@ struct MeshNodeMovedBody {
 
 /// One index = one tetrahedron; any order. Subtracts moved tetrahedra from the class counts;
 /// moved_tet_setup() adds their new classes.
-struct TetMovedBody {
+struct TetMovedOp {
   View<const std::int32_t> tets;
   View<const std::uint8_t> node_moved;
   View<const TetSetup> setups;
@@ -74,14 +74,14 @@ void tet_moved(Exec& exec,
                View<std::int64_t> moved_counts,
                View<std::int64_t> class_counts,
                const HexView& hexes = {}) {
-  exec.for_each("warp/setup", now.size, MeshNodeMovedBody{before, now, node_moved});
+  exec.for_each("warp/setup", now.size, MeshNodeMovedOp{before, now, node_moved});
   exec.for_each("warp/setup", setups.size,
-                TetMovedBody{tets, node_moved, setups, moved, moved_counts, class_counts, hexes});
+                TetMovedOp{tets, node_moved, setups, moved, moved_counts, class_counts, hexes});
 }
 
 /// One item = one moved tetrahedron; any order.
-struct MovedTetSetupBody {
-  TetSetupBody setup;
+struct MovedTetSetupOp {
+  TetSetupOp setup;
 
   TETWARP_HD void operator()(std::int64_t t, std::int64_t, std::int64_t) const { setup(t); }
 };
@@ -98,8 +98,8 @@ template <class Exec>
 void moved_tet_setup(Exec& exec,
                      View<const std::int64_t> moved_offsets,
                      std::int64_t moved_count,
-                     const TetSetupBody& setup) {
-  exec.for_each_item("warp/setup", moved_offsets, moved_count, MovedTetSetupBody{setup});
+                     const TetSetupOp& setup) {
+  exec.for_each_item("warp/setup", moved_offsets, moved_count, MovedTetSetupOp{setup});
 }
 
 }  // namespace tetwarp

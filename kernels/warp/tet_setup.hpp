@@ -252,7 +252,7 @@ TETWARP_HD void set_shift_row(std::int64_t to, int row, TetSetup& setup) {
 }
 
 /// One index = one tetrahedron; reads its nodes, writes its setup and sizes; any order.
-struct TetSetupBody {
+struct TetSetupOp {
   View<const std::int32_t> tets;             ///< node indices, shape [4 * tet_count]
   View<const Node> deformed;                 ///< in the frame [quantum], shape [node_count]
   View<const Node> rest;                     ///< in the source's index space [quantum], as many
@@ -313,14 +313,14 @@ struct TetSetupBody {
 /// Planes come from exact integer normals, so they are accurate for thin tetrahedra. A map that
 /// moves all nodes by the same whole voxels, to within a quantum, is replaced by that shift.
 /// @param exec  where to run
-/// @param body  input and output, see TetSetupBody
+/// @param body  input and output, see TetSetupOp
 /// @pre  indices in body.tets are in range; the pipeline checks them
 ///
 /// Determinism: boxes, classes and copies are exact; planes and maps within 2^-48 relative between
 /// back ends. Cost: about 150 integer multiplications, 330 bytes written per tetrahedron.
 /// Source: Gascon et al. 2013, section 3; the integer setup is ours.
 template <class Exec>
-void tet_setup(Exec& exec, const TetSetupBody& body) {
+void tet_setup(Exec& exec, const TetSetupOp& body) {
   exec.for_each("warp/setup", body.setups.size, body);
 }
 

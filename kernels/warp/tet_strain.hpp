@@ -35,7 +35,7 @@ TETWARP_HD TetStrain strain_of(const Matrix3& backward) {
 }
 
 /// One index = one tetrahedron; any order. Tetrahedra that are flat or bad get zeros.
-struct TetStrainBody {
+struct TetStrainOp {
   View<const TetSetup> setups;
   GridAxes axes;
   View<TetStrain> strains;
@@ -65,7 +65,7 @@ void tet_strain(Exec& exec,
                 View<const TetSetup> setups,
                 const GridAxes& axes,
                 View<TetStrain> strains) {
-  exec.for_each("warp/fields", strains.size, TetStrainBody{setups, axes, strains});
+  exec.for_each("warp/fields", strains.size, TetStrainOp{setups, axes, strains});
 }
 
 }  // namespace tetwarp

@@ -113,7 +113,7 @@ TETWARP_HD Int128 volume6_of(const TetNodes& tet) {
 }
 
 /// One index = one tetrahedron; any order.
-struct TetTransformBody {
+struct TetTransformOp {
   static constexpr int resident_blocks = 2;  ///< leaves 128 registers per thread: no spills
   View<const TetSetup> setups;
   View<const std::int32_t> tets;
@@ -186,7 +186,7 @@ void tet_transform(Exec& exec,
                    View<std::int64_t> averaged_count) {
   exec.for_each(
       "warp/setup", transforms.size,
-      TetTransformBody{setups, tets, nodes, rest, moved, choice, transforms, averaged_count});
+      TetTransformOp{setups, tets, nodes, rest, moved, choice, transforms, averaged_count});
 }
 
 }  // namespace tetwarp

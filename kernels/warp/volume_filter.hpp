@@ -194,7 +194,7 @@ TETWARP_HD T constant_value(const SourceView<T>& source, std::int64_t voxel, int
   return finished(source, source.coefficients[sample], c);
 }
 
-/// Samples the source by a filter of this file. At a voxel's centre the result is that voxel's
+/// Samples the source by a filter of this file. At a voxel's center the result is that voxel's
 /// sample, bit for bit. The last branch is bspline's: only that filter has coefficients.
 /// @param out  shape [components]
 template <class T>
@@ -203,9 +203,9 @@ TETWARP_HD void sample_filtered(const SourceView<T>& source,
                                 const SourcePosition<ArithmeticOf<T>>& at,
                                 T* out) {
   const auto taps = filter_taps(source, filter, at);
-  const bool is_centre = at.fraction[0] == 0 && at.fraction[1] == 0 && at.fraction[2] == 0;
+  const bool is_center = at.fraction[0] == 0 && at.fraction[1] == 0 && at.fraction[2] == 0;
   for (int c = 0; c < source.components; ++c) {
-    if (is_centre) {
+    if (is_center) {
       out[c] = source.data[taps.near + c];
     } else if (filter == Filter::lanczos) {
       out[c] = finished(source, filtered<6>(taps, source.data + c), c);

@@ -1,5 +1,5 @@
 /// @file volume_label.hpp
-/// The filter for labels: the label of largest total weight among the eight neighbours that linear
+/// The filter for labels: the label of largest total weight among the eight neighbors that linear
 /// interpolation would read.
 #pragma once
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace tetwarp {
 constexpr double label_steps = 0x1p20;
 
 /// The label with the largest sum of trilinear weights; of equal ones the lowest.
-/// @param label     labels of the eight neighbours, x fastest
-/// @param fraction  of the way from the lower to the upper neighbours, per axis
+/// @param label     labels of the eight neighbors, x fastest
+/// @param fraction  of the way from the lower to the upper neighbors, per axis
 template <class T, class Real>
 TETWARP_HD T heaviest_label(const T* label, const Real* fraction) {
   std::int64_t weight[3][2], share[8];

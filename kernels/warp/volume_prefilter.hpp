@@ -57,9 +57,9 @@ TETWARP_HD void prefilter_lines(double* line, std::int64_t step, int count, int 
 /// it.
 ///
 /// A sample that is not finite is replaced by the previous finite one of the row, or else the next,
-/// so that coefficients of its neighbours stay finite.
+/// so that coefficients of its neighbors stay finite.
 template <class T>
-struct SplineRowBody {
+struct SplineRowOp {
   SourceView<T> source;
   View<double> work;
 
@@ -85,7 +85,7 @@ struct SplineRowBody {
 };
 
 /// One index = a bundle of adjacent lines along y or z; any order.
-struct SplineLinesBody {
+struct SplineLinesOp {
   View<double> work;
   std::int64_t step;  ///< distance of a line's samples; also the number of adjacent lines
   int count;          ///< samples per line
@@ -106,7 +106,7 @@ struct SplineLinesBody {
 /// One index = one sample; any order. Converts a coefficient to Real. A coefficient close to its
 /// sample is replaced by the sample, as is that of a sample that is not finite.
 template <class T>
-struct SplineStoreBody {
+struct SplineStoreOp {
   using Real = ArithmeticOf<T>;
   View<const T> samples;
   View<const double> work;
@@ -116,7 +116,7 @@ struct SplineStoreBody {
   TETWARP_HD void operator()(std::int64_t s) const {
     const double sample = static_cast<double>(samples[s]);
     const bool is_close = !(fabs(work[s] - sample) > tolerance);  // true for NaN
-    const bool is_finite = SplineRowBody<T>::is_finite(sample);
+    const bool is_finite = SplineRowOp<T>::is_finite(sample);
     coefficients[s] = static_cast<Real>(is_finite && !is_close ? work[s] : sample);
   }
 };
@@ -142,13 +142,13 @@ void volume_prefilter(Exec& exec,
                       View<ArithmeticOf<T>> coefficients) {
   const std::int64_t row = std::int64_t{source.dims[0]} * source.components;
   const std::int64_t slice = row * source.dims[1];
-  exec.for_each("warp/setup", work.size / source.dims[0], SplineRowBody<T>{source, work});
-  exec.for_each("warp/setup", SplineLinesBody::bundles_of(row) * source.dims[2],
-                SplineLinesBody{work, row, source.dims[1]});
-  exec.for_each("warp/setup", SplineLinesBody::bundles_of(slice),
-                SplineLinesBody{work, slice, source.dims[2]});
+  exec.for_each("warp/setup", work.size / source.dims[0], SplineRowOp<T>{source, work});
+  exec.for_each("warp/setup", SplineLinesOp::bundles_of(row) * source.dims[2],
+                SplineLinesOp{work, row, source.dims[1]});
+  exec.for_each("warp/setup", SplineLinesOp::bundles_of(slice),
+                SplineLinesOp{work, slice, source.dims[2]});
   exec.for_each("warp/setup", work.size,
-                SplineStoreBody<T>{{source.data, work.size}, work, tolerance, coefficients});
+                SplineStoreOp<T>{{source.data, work.size}, work, tolerance, coefficients});
 }
 
 }  // namespace tetwarp

@@ -13,7 +13,7 @@ namespace tetwarp {
 
 /// One index = part_voxels consecutive voxels of the source; any order.
 template <class T>
-struct VolumeRangeBody {
+struct VolumeRangeOp {
   using Real = ArithmeticOf<T>;
   static constexpr std::int64_t part_voxels = 4096;
   static constexpr Real beyond = std::numeric_limits<Real>::infinity();
@@ -50,13 +50,13 @@ std::vector<ArithmeticOf<T>> volume_range(Exec& exec, const SourceView<T>& sourc
   using Real = ArithmeticOf<T>;
   const std::int64_t voxels = std::int64_t{source.dims[0]} * source.dims[1] * source.dims[2];
   const std::int64_t parts =
-      (voxels + VolumeRangeBody<T>::part_voxels - 1) / VolumeRangeBody<T>::part_voxels;
+      (voxels + VolumeRangeOp<T>::part_voxels - 1) / VolumeRangeOp<T>::part_voxels;
   const auto entries = static_cast<std::size_t>(2 * source.components);
   typename Exec::template Buffer<Real> buffer;
   std::vector<Real> ranges(static_cast<std::size_t>(parts) * entries);
   buffer.reserve(parts * 2 * source.components);
   const View<Real> found = buffer.view(parts * 2 * source.components);
-  exec.for_each("warp/setup", parts, VolumeRangeBody<T>{source, voxels, found});
+  exec.for_each("warp/setup", parts, VolumeRangeOp<T>{source, voxels, found});
   exec.get(View<const Real>(found), ranges.data());
   for (std::size_t r = entries; r < ranges.size(); ++r) {
     Real& bound = ranges[r % entries];

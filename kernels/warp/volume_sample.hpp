@@ -4,7 +4,7 @@
 ///
 /// A position is an integer voxel `whole` plus a small local part, so that float32 is as accurate
 /// in large volumes as in small ones. The source is defined on [-0.5, N - 0.5] per axis; indices of
-/// neighbours are clamped to the source.
+/// neighbors are clamped to the source.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -104,11 +104,11 @@ TETWARP_HD void local_position(const Map& map, Index i, Index j, Index k, Real* 
   }
 }
 
-/// Neighbours and weights of one position for nearest and linear.
+/// Neighbors and weights of one position for nearest and linear.
 template <class Real>
 struct Tap {
   bool inside;                ///< the source is defined there; else the voxel is background
-  std::int64_t offset[3][2];  ///< of the lower and upper neighbour per axis [sample]
+  std::int64_t offset[3][2];  ///< of the lower and upper neighbor per axis [sample]
   Real fraction[3];
 };
 
@@ -121,7 +121,7 @@ TETWARP_HD bool is_defined(const SourceView<T>& source, int axis, int whole, Rea
   return x >= low && x <= high;
 }
 
-/// Neighbours and weights for filters nearest and linear at position whole + x.
+/// Neighbors and weights for filters nearest and linear at position whole + x.
 template <class T, class Real>
 TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
                             Filter filter,
@@ -136,7 +136,7 @@ TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
     const Real near = filter == Filter::nearest ? x[axis] + Real(0.5) : x[axis];
     const Real lower = tap.inside ? floor(near) : Real(0);
     const int voxel = whole[axis] + static_cast<int>(lower);
-    // Beyond the outermost voxel centres there is only one neighbour.
+    // Beyond the outermost voxel centers there is only one neighbor.
     const bool blends = filter == Filter::linear && voxel >= 0 && voxel < last;
     tap.fraction[axis] = blends ? near - lower : Real(0);
     tap.offset[axis][0] = min_of(max_of(voxel, 0), last) * stride;

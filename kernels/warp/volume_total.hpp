@@ -10,7 +10,7 @@
 namespace tetwarp {
 
 /// One index = one component of part_voxels consecutive voxels; any order.
-struct VolumeSumBody {
+struct VolumeSumOp {
   static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
   static constexpr std::int64_t part_voxels = 4096;
   NumberView volume;
@@ -29,7 +29,7 @@ struct VolumeSumBody {
 
 /// Number of partial sums per component of a volume.
 TETWARP_HD std::int64_t volume_part_count(std::int64_t voxel_count) {
-  return (voxel_count + VolumeSumBody::part_voxels - 1) / VolumeSumBody::part_voxels;
+  return (voxel_count + VolumeSumOp::part_voxels - 1) / VolumeSumOp::part_voxels;
 }
 
 /// Sums all samples of each component by a tree that depends only on the number of voxels.
@@ -56,7 +56,7 @@ void volume_total(Exec& exec,
     const std::int64_t parts = volume_part_count(voxel_count);
     is_done = parts == 1;
     const View<double> sums = {is_done ? totals.data : to, parts * components};
-    exec.for_each("warp/raster", sums.size, VolumeSumBody{volume, voxel_count, components, sums});
+    exec.for_each("warp/raster", sums.size, VolumeSumOp{volume, voxel_count, components, sums});
     volume = {sums.data, PixelType::float64};
     voxel_count = parts;
     double* const last = to;
@@ -76,8 +76,8 @@ TETWARP_HD TetSetup rest_setup(const TetNodes& tet, const OutputFrame& frame) {
 }
 
 /// One index = one tetrahedron; any order. Counts the slices of the source that its box intersects:
-/// the items of TetSliceMassBody.
-struct TetSliceCountBody {
+/// the items of TetSliceMassOp.
+struct TetSliceCountOp {
   View<const std::int32_t> tets;
   View<const Node> rest;
   OutputFrame frame;  ///< the source
@@ -91,7 +91,7 @@ struct TetSliceCountBody {
 
 /// One item = one slice of the source in the box of one tetrahedron; any order. Sums sample times
 /// volume of the voxel within the tetrahedron, per component.
-struct TetSliceMassBody {
+struct TetSliceMassOp {
   View<const std::int32_t> tets;
   View<const Node> rest;
   OutputFrame frame;

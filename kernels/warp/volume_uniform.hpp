@@ -97,7 +97,7 @@ TETWARP_HD void set_mark(std::uint8_t* mark) {
 
 /// One index = one tetrahedron; any order. Marks the blocks that its voxels may sample, and their
 /// neighbors.
-struct BlockNeedBody {
+struct BlockNeedOp {
   View<const std::int32_t> tets;
   View<const Node> rest;
   UniformMap map;
@@ -133,7 +133,7 @@ struct BlockNeedBody {
 /// One index = one block; any order. Sets reach to 1 for marked blocks in which the source is
 /// constant, to 0 for others.
 template <class T>
-struct BlockUniformBody {
+struct BlockUniformOp {
   static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
   SourceView<T> source;
   UniformMap map;
@@ -173,7 +173,7 @@ struct BlockUniformBody {
 /// One index = one block; any order. Sets reach to n + 1 if the block and its seven neighbors
 /// towards higher i, j and k have reach n and the same value.
 template <class T>
-struct BlockReachBody {
+struct BlockReachOp {
   static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
   SourceView<T> source;
   UniformMap map;
@@ -236,13 +236,12 @@ void volume_uniform(Exec& exec,
   exec.zero("warp/setup", reach);
   exec.for_each(
       "warp/setup", tets.size / 4,
-      BlockNeedBody{
-          tets, rest, map, {source.origin[0], source.origin[1], source.origin[2]}, reach});
-  exec.for_each("warp/setup", reach.size, BlockUniformBody<T>{source, map, reach});
+      BlockNeedOp{tets, rest, map, {source.origin[0], source.origin[1], source.origin[2]}, reach});
+  exec.for_each("warp/setup", reach.size, BlockUniformOp<T>{source, map, reach});
   View<std::uint8_t> from = reach, to = scratch;
   for (int n = 1; n < longest_reach; ++n) {  // an even number of passes: ends in `reach`
     exec.for_each("warp/setup", reach.size,
-                  BlockReachBody<T>{source, map, n, from, to, extended_count});
+                  BlockReachOp<T>{source, map, n, from, to, extended_count});
     const View<std::uint8_t> last = from;
     from = to;
     to = last;

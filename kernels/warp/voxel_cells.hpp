@@ -9,7 +9,7 @@
 namespace tetwarp {
 
 /// One index = one voxel; any order.
-struct VoxelCellBody {
+struct VoxelCellOp {
   HexView hexes;
   OutputFrame frame;
   View<const std::uint8_t> touched;  ///< output cells that the raster wrote; size 0: all
@@ -42,7 +42,7 @@ void voxel_cells(Exec& exec,
                  View<const std::uint8_t> touched,
                  View<std::int32_t> owners) {
   if (hexes.nodes.size == 0) return;
-  exec.for_each("warp/fields", owners.size, VoxelCellBody{hexes, frame, touched, owners});
+  exec.for_each("warp/fields", owners.size, VoxelCellOp{hexes, frame, touched, owners});
 }
 
 }  // namespace tetwarp

@@ -12,7 +12,7 @@ namespace tetwarp {
 
 /// One index = one voxel of the output; any order. Counts voxels strictly inside two or more
 /// tetrahedra.
-struct VoxelFoldBody {
+struct VoxelFoldOp {
   View<const std::int32_t> tets;
   View<const Node> nodes;
   PairList list;

@@ -225,13 +225,13 @@ struct VoxelFieldsJob {
 };
 
 /// One index = a stretch of voxels of a row; any order.
-struct VoxelFieldsBody {
+struct VoxelFieldsOp {
   VoxelFieldsJob job;
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<false>(index); }
 };
 
 /// The same for voxels in hexahedra. A separate kernel, because it needs many registers.
-struct HexFieldsBody {
+struct HexFieldsOp {
   VoxelFieldsJob job;
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<true>(index); }
 };
@@ -250,9 +250,9 @@ struct HexFieldsBody {
 template <class Exec>
 void voxel_fields(Exec& exec, VoxelFieldsJob job) {
   job.stretch = Exec::reads_are_free ? job.frame.end[0] - job.frame.begin[0] : 1;
-  exec.for_each("warp/fields", job.index_count(), VoxelFieldsBody{job});
+  exec.for_each("warp/fields", job.index_count(), VoxelFieldsOp{job});
   if (job.mesh.hexes.nodes.size > 0) {
-    exec.for_each("warp/fields", job.index_count(), HexFieldsBody{job});
+    exec.for_each("warp/fields", job.index_count(), HexFieldsOp{job});
   }
 }
 

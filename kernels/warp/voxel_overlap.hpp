@@ -15,7 +15,7 @@ namespace tetwarp {
 
 /// One index = one tetrahedron; any order. Extends its box to all voxels that it intersects, and
 /// replaces a whole-voxel shift that is not exact by the exact map.
-struct TetWidenBody {
+struct TetWidenOp {
   View<const std::int32_t> tets;
   View<const Node> nodes;
   View<const Node> rest;
@@ -61,14 +61,14 @@ struct TetWidenBody {
 ///
 /// Determinism: as tet_setup(). Cost: 96 bytes read and 40 written per tetrahedron. Source: ours.
 template <class Exec>
-void tet_widen(Exec& exec, const TetSetupBody& setup, View<const std::uint8_t> moved) {
+void tet_widen(Exec& exec, const TetSetupOp& setup, View<const std::uint8_t> moved) {
   exec.for_each("warp/setup", setup.setups.size,
-                TetWidenBody{setup.tets, setup.deformed, setup.rest, moved, setup.frame,
-                             setup.setups, setup.pair_counts});
+                TetWidenOp{setup.tets, setup.deformed, setup.rest, moved, setup.frame, setup.setups,
+                           setup.pair_counts});
 }
 
 /// One index = one voxel of the output, counted from `first`; any order.
-struct VoxelOverlapBody {
+struct VoxelOverlapOp {
   static constexpr int resident_blocks = 2;  ///< leaves 128 registers per thread: no spills
   View<const TetSetup> setups;
   View<const std::int32_t> tets;          ///< node indices, shape [4 * tet_count]
@@ -272,7 +272,7 @@ struct VoxelOverlapBody {
 /// and for storing them: see VoxelRounding.
 /// Where tetrahedra overlap, their contributions add up; flat ones contribute nothing.
 /// @param exec  where to run
-/// @param body  input and output, see VoxelOverlapBody
+/// @param body  input and output, see VoxelOverlapOp
 /// @param count  voxels to set, from body.first on
 /// @pre body.components is at most max_transform_components; the public calls check it
 ///
@@ -281,7 +281,7 @@ struct VoxelOverlapBody {
 /// source; little where the source is constant.
 /// Source: ours; integration over intersections in a remap that keeps totals: J. K. Dukowicz, 1984.
 template <class Exec>
-void voxel_overlap(Exec& exec, const VoxelOverlapBody& body, std::int64_t count) {
+void voxel_overlap(Exec& exec, const VoxelOverlapOp& body, std::int64_t count) {
   exec.for_each("warp/raster", count, body);
 }
 

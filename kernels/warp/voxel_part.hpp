@@ -33,8 +33,8 @@ TETWARP_HD VoxelRange range_of_box(const SourceMap<double>& map) {
   for (int row = 0; row < 3; ++row) {
     const double reach =
         0.5 * (fabs(map.axis[0][row]) + fabs(map.axis[1][row]) + fabs(map.axis[2][row]));
-    const double centre = map.base[row] + 0.5;
-    range.set(row, centre - reach, centre + reach);
+    const double center = map.base[row] + 0.5;
+    range.set(row, center - reach, center + reach);
   }
   return range;
 }
@@ -69,13 +69,13 @@ struct PartFaces {
   /// One of the two sides of the box that are normal to an axis of the output.
   TETWARP_HD bool set_box_side(int axis, int upper, SourceFace& face) const {
     const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-    const double from_centre = upper - 0.5;
+    const double from_center = upper - 0.5;
     CutSquare square;
     square.set_whole();
     for (int f = 0; f < 4; ++f) {
       if ((cuts >> f & 1) == 0) continue;
       if (!square.cut(
-              {height[f] + from_centre * tet.plane[axis][f], {tet.plane[u][f], tet.plane[v][f]}})) {
+              {height[f] + from_center * tet.plane[axis][f], {tet.plane[u][f], tet.plane[v][f]}})) {
         return false;
       }
     }
@@ -83,7 +83,7 @@ struct PartFaces {
     for (int row = 0; row < 3; ++row) {
       side.side[0][row] = map.axis[u][row];
       side.side[1][row] = map.axis[v][row];
-      side.origin[row] = (map.base[row] + 0.5) + from_centre * map.axis[axis][row];
+      side.origin[row] = (map.base[row] + 0.5) + from_center * map.axis[axis][row];
     }
     set_polygon(square, side, upper != 0 ? weight : -weight, face);
     return true;

@@ -53,7 +53,7 @@ struct VoxelRounding {
 };
 
 /// One index = one cell; any order. Clears the changes of cells that are written again.
-struct RoundingClearBody {
+struct RoundingClearOp {
   View<const std::int64_t> cell_work;  ///< only keep_cell is used; size 0: no cell is kept
   int components;
   View<RoundingChange> changes;  ///< [cell][component]
@@ -65,7 +65,7 @@ struct RoundingClearBody {
 };
 
 /// One index = 1024 cells; any order. Sums their changes.
-struct RoundingSumBody {
+struct RoundingSumOp {
   static constexpr std::int64_t cells = 1024;
   View<const RoundingChange> changes;  ///< [cell][component]
   int components;

@@ -30,8 +30,8 @@ TETWARP_HD void add_piece(double volume, const double* const (&at)[4], VoxelShar
 }
 
 /// A whole box: the mean of the product of two linear functions is that of their values at the
-/// centre and 1/12 of the product of their slopes.
-/// @param height  N_a at the centre
+/// center and 1/12 of the product of their slopes.
+/// @param height  N_a at the center
 TETWARP_HD void set_whole_share(const TetSetup& tet, const double* height, VoxelShare& share) {
   share.volume = 1;
   int k = 0;

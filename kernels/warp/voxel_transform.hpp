@@ -65,9 +65,9 @@ TETWARP_HD bool add_values(
   SourceView<double> shape = {
       nullptr, {source.dims[0], source.dims[1], source.dims[2]}, source.components};
   set_transform_taps(shape, filter, at, taps);
-  const bool is_centre = at.fraction[0] == 0 && at.fraction[1] == 0 && at.fraction[2] == 0;
+  const bool is_center = at.fraction[0] == 0 && at.fraction[1] == 0 && at.fraction[2] == 0;
   for (int c = 0; c < source.components; ++c) {
-    sums[c] += is_centre                   ? static_cast<double>(source.data[taps.near + c])
+    sums[c] += is_center                   ? static_cast<double>(source.data[taps.near + c])
                : filter == Filter::bspline ? looped_blend(taps, source.coefficients + c)
                                            : looped_blend(taps, source.data + c);
   }

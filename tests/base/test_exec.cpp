@@ -11,12 +11,12 @@
 
 namespace tetwarp::test {
 
-struct SquareBody {
+struct SquareOp {
   View<std::int64_t> values;
   TETWARP_HD void operator()(std::int64_t i) const { values[i] += i * i; }
 };
 
-struct PlaceBody {
+struct PlaceOp {
   View<std::int64_t> segments;
   View<std::int64_t> locals;
   TETWARP_HD void operator()(std::int64_t segment, std::int64_t local, std::int64_t item) const {
@@ -26,7 +26,7 @@ struct PlaceBody {
 };
 
 /// Each third index appends itself, each ninth a second time; all tally one.
-struct ThirdsBody {
+struct ThirdsOp {
   template <class Emit>
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
     emit.tally(1);
@@ -35,7 +35,7 @@ struct ThirdsBody {
   }
 };
 
-struct EntryBody {
+struct EntryOp {
   View<const double> values;
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{values[i]}}; }
 };
@@ -74,7 +74,7 @@ TYPED_TEST(Executor, ForEachVisitsEveryIndexOnce) {
       squares[i] = static_cast<std::int64_t>(i * i);
     }
 
-    this->exec().for_each("test", size, SquareBody{values});
+    this->exec().for_each("test", size, SquareOp{values});
 
     EXPECT_EQ(this->download(values), squares);
   }
@@ -91,8 +91,8 @@ TYPED_TEST(Executor, ForEachItemPassesSegmentAndPlace) {
       offsets.push_back(offsets.back() + length);
     }
     const std::int64_t items = offsets.back();
-    const PlaceBody body{this->template zeros<std::int64_t>(items),
-                         this->template zeros<std::int64_t>(items)};
+    const PlaceOp body{this->template zeros<std::int64_t>(items),
+                       this->template zeros<std::int64_t>(items)};
 
     this->exec().for_each_item("test", this->upload(offsets), items, body);
 
@@ -103,8 +103,7 @@ TYPED_TEST(Executor, ForEachItemPassesSegmentAndPlace) {
 
 TYPED_TEST(Executor, ForEachItemLeavesOutWhatHasNoRoom) {
   const auto offsets = this->upload(std::vector<std::int64_t>{0, 2, 2, 5});
-  const PlaceBody body{this->template zeros<std::int64_t>(5),
-                       this->template zeros<std::int64_t>(5)};
+  const PlaceOp body{this->template zeros<std::int64_t>(5), this->template zeros<std::int64_t>(5)};
 
   this->exec().for_each_item("test", offsets, 3, body);
 
@@ -129,7 +128,7 @@ TYPED_TEST(Executor, SumAddsEveryEntryOfItsRange) {
   for (const std::int64_t size : {0, 1, 31, 32, 33, 1025, 5000}) {
     std::vector<double> values(static_cast<std::size_t>(size));
     std::iota(values.begin(), values.end(), 1.0);
-    const EntryBody body{this->upload(values)};
+    const EntryOp body{this->upload(values)};
     const std::int64_t first = std::min<std::int64_t>(size, 3);
     const auto sum = this->exec().template sum<PlainSums<1>>("test", first, size, body);
 
@@ -146,14 +145,14 @@ TYPED_TEST(Executor, ListsAreInTheOrderOfWhatAppends) {
       if (i % 9 == 0) expected.push_back(-i);
     }
 
-    this->exec().append("test", size, ThirdsBody{}, list);
+    this->exec().append("test", size, ThirdsOp{}, list);
 
     EXPECT_EQ(this->download(list.view()), expected);
     EXPECT_EQ(list.tally(), size);
     const auto count = static_cast<std::int64_t>(expected.size());
-    EXPECT_NO_THROW(this->exec().append("test", size, ThirdsBody{}, list, count));
+    EXPECT_NO_THROW(this->exec().append("test", size, ThirdsOp{}, list, count));
     if (size == 0) continue;
-    EXPECT_THROW(this->exec().append("test", size, ThirdsBody{}, list, count - 1), TooManyPairs);
+    EXPECT_THROW(this->exec().append("test", size, ThirdsOp{}, list, count - 1), TooManyPairs);
   }
 }
 
@@ -224,7 +223,7 @@ TYPED_TEST(Executor, DeliversWhatWasWritten) {
   for (std::size_t i = 0; i < 33; ++i) squares[i] = static_cast<std::int64_t>(i * i);
 
   this->exec().zero("test", View<std::int64_t>{place, 33});
-  this->exec().for_each("test", 33, SquareBody{{place, 33}});
+  this->exec().for_each("test", 33, SquareOp{{place, 33}});
   this->exec().end_compute(true);
   this->exec().download("test", reinterpret_cast<const std::byte*>(place),
                         reinterpret_cast<std::byte*>(results.data()), {8, 33, 33, 1});
@@ -237,7 +236,7 @@ TYPED_TEST(Executor, DeliversWhatWasWritten) {
 TYPED_TEST(Executor, ChargesTimeToTheLabelUntilCleared) {
   const auto values = this->template zeros<std::int64_t>(100000);
 
-  this->exec().for_each("test/square", values.size, SquareBody{values});
+  this->exec().for_each("test/square", values.size, SquareOp{values});
 
   EXPECT_GT(this->exec().times().of("test/square"), 0);
   EXPECT_EQ(this->exec().times().of("test/other"), 0);
@@ -248,7 +247,7 @@ TYPED_TEST(Executor, ChargesTimeToTheLabelUntilCleared) {
 TEST(ExecutorCpu, SumsAreTheSameForAnyNumberOfThreads) {
   std::vector<double> values;
   for (std::uint64_t i = 0; i < 5000; ++i) values.push_back(scenes::uniform(11, i));
-  const EntryBody body{{values.data(), std::ssize(values)}};
+  const EntryOp body{{values.data(), std::ssize(values)}};
   const double one = CpuExec(1).sum<PlainSums<1>>("test", 7, 5000, body).value[0];
 
   EXPECT_EQ(CpuExec(2).sum<PlainSums<1>>("test", 7, 5000, body).value[0], one);

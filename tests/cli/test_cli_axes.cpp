@@ -14,7 +14,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 /// 6 x 6 x 6 unit voxels around the origin.
-nifti_1_header centred_header(short intent_code, short components) {
+nifti_1_header centered_header(short intent_code, short components) {
   nifti_1_header header = float_header({6, 6, 6}, components);
   header.intent_code = intent_code;
   header.sform_code = NIFTI_XFORM_TALAIRACH;
@@ -61,7 +61,7 @@ void expect_near(const std::vector<float>& found, const std::vector<float>& expe
 /// diag(3, 2, 1) about z becomes diag(2, 3, 1): xx xy yy xz yz zz in the file.
 TEST(CliAxes, ASymmetricMatrixTurnsInNiftisOrder) {
   const TemporaryFolder folder;
-  write_constant(folder / "in.nii", centred_header(NIFTI_INTENT_SYMMATRIX, 6), {3, 0, 2, 0, 0, 1});
+  write_constant(folder / "in.nii", centered_header(NIFTI_INTENT_SYMMATRIX, 6), {3, 0, 2, 0, 0, 1});
   write_turn(folder / "mesh.vtkhdf", 0, 1);
 
   expect_near(warped(folder, {}, {"--tensors", "values", "--outputs", "strain"}),
@@ -83,13 +83,13 @@ TEST(CliAxes, ASymmetricMatrixTurnsInNiftisOrder) {
 /// to -z, and is written as ITK reads it.
 TEST(CliAxes, VectorsOfItkTurnInTheirOwnAxes) {
   const TemporaryFolder folder;
-  write_constant(folder / "in.nii", centred_header(NIFTI_INTENT_VECTOR, 3), {0, 1, 0});
+  write_constant(folder / "in.nii", centered_header(NIFTI_INTENT_VECTOR, 3), {0, 1, 0});
   write_turn(folder / "mesh.vtkhdf", 1, 2);
 
   expect_near(warped(folder, {}, {"--vectors", "values"}), {0, 0, 1});
   expect_near(warped(folder, {"--axes", "lps"}, {"--vectors", "values"}), {0, 0, -1});
 
-  write_constant(folder / "in.nii", centred_header(NIFTI_INTENT_VECTOR, 3), {1, 2, 3});
+  write_constant(folder / "in.nii", centered_header(NIFTI_INTENT_VECTOR, 3), {1, 2, 3});
   expect_near(warped(folder, {"--axes", "lps"}, {}), {1, 2, 3});
   const Names as_ras{"export", "out.vtkhdf", "--axes", "ras", "-o", "ras.nii"};
   EXPECT_EQ(run_command(folder, as_ras).exit_code, 0);
@@ -99,7 +99,7 @@ TEST(CliAxes, VectorsOfItkTurnInTheirOwnAxes) {
 /// Axes are only in the header's facts: a copy with other facts is not kept by --resume.
 TEST(CliAxes, ResumeWritesAFileWithOtherFactsAgain) {
   const TemporaryFolder folder;
-  nifti_1_header header = centred_header(NIFTI_INTENT_NONE, 1);
+  nifti_1_header header = centered_header(NIFTI_INTENT_NONE, 1);
   write_constant(folder / "in.nii", header, {5});
   write_turn(folder / "mesh.vtkhdf", 0, 1);
   warped(folder, {}, {"--resume"});

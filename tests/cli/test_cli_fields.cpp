@@ -62,7 +62,7 @@ TEST(CliFields, WritesFieldsOfTheDeformationAndExportsDisplacementsForItk) {
   }
 }
 
-/// ITK's world: millimetres, turned from RAS to LPS, but as it is where the header has no form; an
+/// ITK's world: millimeters, turned from RAS to LPS, but as it is where the header has no form; an
 /// image of one slice is 2D. The box moves by (6, 0, 0) units of the header.
 TEST(CliFields, OfNiftiImagesAreInTheWorldThatItkGivesThem) {
   const struct {

@@ -30,15 +30,15 @@ class TurnedScene : public TemporaryFolder {
     write_mesh(*this / "mesh.vtkhdf", box_mesh(), {moves}, {0});
   }
 
-  /// The flow at the centre of the grid after a warp with more words.
+  /// The flow at the center of the grid after a warp with more words.
   std::vector<float> flow_after(std::vector<std::string> words) const {
     words.insert(words.begin(), {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"});
     const CommandResult result = run_command(*this, words);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const Volume volume = read_volume(*this / "out.vtkhdf", "flow");
     const auto samples = volume.samples<float>();
-    const std::size_t centre = 3 * ((4 * 10 + 4) * 12 + 5);
-    return {samples.begin() + centre, samples.begin() + centre + 3};
+    const std::size_t center = 3 * ((4 * 10 + 4) * 12 + 5);
+    return {samples.begin() + center, samples.begin() + center + 3};
   }
 };
 

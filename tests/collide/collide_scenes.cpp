@@ -63,9 +63,9 @@ void CollideScene::add_mesh(const std::vector<Point3>& vertices,
   end_body();
 }
 
-void CollideScene::add_sphere(const Point3& centre, double radius, const BodyFlags& flags) {
+void CollideScene::add_sphere(const Point3& center, double radius, const BodyFlags& flags) {
   begin_body(flags);
-  add_vertex(centre, radius);
+  add_vertex(center, radius);
   end_body();
 }
 
@@ -89,19 +89,19 @@ void CollideScene::add_plane(const PlanePlace& place) {
 }
 
 void CollideScene::add_ball(
-    const Point3& centre, double radius, int rings, int sectors, const BodyFlags& flags) {
-  std::vector<Point3> vertices = {plus(centre, {0, 0, radius})};
+    const Point3& center, double radius, int rings, int sectors, const BodyFlags& flags) {
+  std::vector<Point3> vertices = {plus(center, {0, 0, radius})};
   std::vector<std::array<std::int32_t, 3>> triangles;
   for (int r = 1; r <= rings; ++r) {
     for (int s = 0; s < sectors; ++s) {
       const double polar = std::numbers::pi * r / (rings + 1);
       const double turn = 2 * std::numbers::pi * (s + 0.5 * r) / sectors;
       vertices.push_back(
-          plus(centre, {radius * std::sin(polar) * std::cos(turn),
+          plus(center, {radius * std::sin(polar) * std::cos(turn),
                         radius * std::sin(polar) * std::sin(turn), radius * std::cos(polar)}));
     }
   }
-  vertices.push_back(plus(centre, {0, 0, -radius}));
+  vertices.push_back(plus(center, {0, 0, -radius}));
   const auto last = static_cast<std::int32_t>(vertices.size()) - 1;
   const auto at = [&](int ring, int s) { return 1 + (ring - 1) * sectors + s % sectors; };
   for (int s = 0; s < sectors; ++s) {
@@ -134,7 +134,7 @@ void CollideScene::add_sheet(const Point3& corner, double edge, int cells, const
 }
 
 void CollideScene::add_soup(std::mt19937& random,
-                            const Point3& centre,
+                            const Point3& center,
                             double cube,
                             double triangle_size,
                             int count,
@@ -142,7 +142,7 @@ void CollideScene::add_soup(std::mt19937& random,
   std::vector<Point3> vertices;
   std::vector<std::array<std::int32_t, 3>> triangles;
   for (int t = 0; t < count; ++t) {
-    const Point3 middle = plus(centre, random_point(random, cube / 2));
+    const Point3 middle = plus(center, random_point(random, cube / 2));
     const Point3 a = plus(middle, random_point(random, triangle_size / 2));
     const Point3 b = plus(middle, random_point(random, triangle_size / 2));
     Point3 c = plus(middle, random_point(random, triangle_size / 2));
@@ -217,8 +217,8 @@ CollideScene pile_scene(int count, int triangles, const BodyFlags& flags) {
   for (int b = 0; b < count; ++b) {
     const int layer = b / 9, row = b / 3 % 3;
     const Point3 cell = {b % 3 * 1.98, row * 1.98, layer * 1.98};
-    const Point3 centre = plus(times(radius, cell), random_point(random, 0.02 * radius));
-    scene.add_ball(centre, radius, rings, sectors, flags);
+    const Point3 center = plus(times(radius, cell), random_point(random, 0.02 * radius));
+    scene.add_ball(center, radius, rings, sectors, flags);
     scene.move_body(b, plus({0, 0, -1e-3}, random_point(random, 5e-4)));
   }
   return scene;

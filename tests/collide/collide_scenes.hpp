@@ -27,17 +27,17 @@ struct CollideScene {
   void add_mesh(const std::vector<Point3>& vertices,
                 const std::vector<std::array<std::int32_t, 3>>& triangles,
                 const BodyFlags& flags = {});
-  void add_sphere(const Point3& centre, double radius, const BodyFlags& flags = {});
+  void add_sphere(const Point3& center, double radius, const BodyFlags& flags = {});
   void add_capsule(const Point3& a, const Point3& b, double radius, const BodyFlags& flags = {});
   void add_plane(const PlanePlace& place);
   /// A closed surface of 2 rings * sectors triangles.
   void add_ball(
-      const Point3& centre, double radius, int rings, int sectors, const BodyFlags& flags = {});
+      const Point3& center, double radius, int rings, int sectors, const BodyFlags& flags = {});
   /// A flat square in z = const of 2 cells^2 triangles.
   void add_sheet(const Point3& corner, double edge, int cells, const BodyFlags& flags = {});
   /// Triangles of random places in a cube; every eighth has no area or no length.
   void add_soup(std::mt19937& random,
-                const Point3& centre,
+                const Point3& center,
                 double cube,
                 double triangle_size,
                 int count,
@@ -59,10 +59,10 @@ struct CollideScene {
 SurfaceMotion at_rest(const SurfacePlaces& places);
 
 /// Balls, soups, spheres, capsules, planes, a sheet that touches itself, fixed bodies, a forbidden
-/// pair; all within about one metre and moving by up to `speed` [m].
+/// pair; all within about one meter and moving by up to `speed` [m].
 CollideScene mixed_scene(unsigned seed, double speed);
 
-/// A pile of `count` balls of about `triangles` triangles in all, which overlap their neighbours
+/// A pile of `count` balls of about `triangles` triangles in all, which overlap their neighbors
 /// slightly, in random order and rotation.
 CollideScene pile_scene(int count, int triangles, const BodyFlags& flags = {});
 

@@ -24,9 +24,9 @@ Point3 turned(const TurningFrame& frame, const Point3& arm, double time) {
               times(1 - std::cos(time * angle), cross(axis, side)));
 }
 Point3 place_at(const TurningFrame& frame, const Point3& x, double time) {
-  const Point3 centre = point_of(frame.centre);
-  return plus(plus(centre, times(time, point_of(frame.motion))),
-              turned(frame, minus(x, centre), time));
+  const Point3 center = point_of(frame.center);
+  return plus(plus(center, times(time, point_of(frame.motion))),
+              turned(frame, minus(x, center), time));
 }
 
 /// Two bodies that turn and move; features of both meet at a known time of their true ways.
@@ -56,9 +56,9 @@ class ScrewMaker {
   }
   TurningFrame frame(double angle) {
     TurningFrame frame;
-    const Point3 centre = vector(), motion = vector(0.3), turn = vector(angle);
+    const Point3 center = vector(), motion = vector(0.3), turn = vector(angle);
     for (std::size_t i = 0; i < 3; ++i) {
-      frame.centre[i] = centre[i], frame.motion[i] = motion[i], frame.turn[i] = turn[i];
+      frame.center[i] = center[i], frame.motion[i] = motion[i], frame.turn[i] = turn[i];
     }
     return frame;
   }
@@ -81,7 +81,7 @@ class ScrewMaker {
         if ((k < (edges ? 2u : 1u)) != (side == 0)) continue;
         hit.pair.start[k] = start_of(own, place[k], hit.pair.time);
         hit.pair.end[k] = place_at(own, hit.pair.start[k], 1);
-        const Point3 arm = minus(hit.pair.start[k], point_of(own.centre));
+        const Point3 arm = minus(hit.pair.start[k], point_of(own.center));
         const double radius = norm(cross(point_of(own.turn), arm)) / angle;
         hit.sagitta[side] = std::max(hit.sagitta[side], radius * angle * angle / 8);
       }
@@ -94,9 +94,9 @@ class ScrewMaker {
   static Point3 start_of(const TurningFrame& frame, const Point3& x, double time) {
     TurningFrame back = frame;
     for (double& c : back.turn) c = -c;
-    const Point3 centre = point_of(frame.centre);
-    const Point3 moved = plus(centre, times(time, point_of(frame.motion)));
-    return plus(centre, turned(back, minus(x, moved), time));
+    const Point3 center = point_of(frame.center);
+    const Point3 moved = plus(center, times(time, point_of(frame.motion)));
+    return plus(center, turned(back, minus(x, moved), time));
   }
 
   std::mt19937_64 random_;
@@ -154,7 +154,7 @@ TEST(CcdTurns, TheTrueWaysKeepTheDistanceUntilTheTimeOfTouch) {
   }
 }
 
-/// A vertex that turns about its own centre against a plane that turns about another: the height at
+/// A vertex that turns about its own center against a plane that turns about another: the height at
 /// the time of touch, and before.
 TEST(CcdTurns, VerticesTouchTurningPlanesInTime) {
   ScrewMaker maker(21);

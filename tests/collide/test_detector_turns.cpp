@@ -29,21 +29,21 @@ void turn_bodies(CollideScene& scene, double angle, double way, unsigned seed) {
   SurfaceMotion& motion = scene.motion;
   motion.frames.resize(scene.surfaces.bodies.size());
   for (std::size_t b = 0; b < motion.frames.size(); ++b) {
-    const Point3 centre = vector(0.3), go = vector(way), turn = vector(angle);
+    const Point3 center = vector(0.3), go = vector(way), turn = vector(angle);
     for (std::size_t i = 0; i < 3; ++i) {
-      motion.frames[b].centre[i] = centre[i];
+      motion.frames[b].center[i] = center[i];
       motion.frames[b].motion[i] = go[i];
       motion.frames[b].turn[i] = turn[i];
     }
     const auto place = [&](const Point3& x) {
-      return plus(plus(centre, go), turned(minus(x, centre), turn, 1));
+      return plus(plus(center, go), turned(minus(x, center), turn, 1));
     };
     const CollisionBody& body = scene.surfaces.bodies[b];
     for (auto v = static_cast<std::size_t>(body.first_vertex);
          v < static_cast<std::size_t>(body.vertex_end); ++v) {
       const Point3& x = motion.start.vertices[v];
       motion.end.vertices[v] = place(x);
-      motion.sagitta[v] = norm(cross(turn, minus(x, centre))) * angle / 8;
+      motion.sagitta[v] = norm(cross(turn, minus(x, center))) * angle / 8;
     }
     for (auto p = static_cast<std::size_t>(body.first_plane);
          p < static_cast<std::size_t>(body.plane_end); ++p) {

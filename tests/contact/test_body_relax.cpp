@@ -63,9 +63,9 @@ struct Relaxation {
     Numbers result(body_velocity.size());
     const ContactSystem<double>& s = stages.system;
     body_relax(exec, 0, block_count(),
-               BodyDefectBody<double>{stages.numbers().system, stages.numbers().block_contacts,
-                                      view_of(s.jacobian), view_of(s.load), view_of(r),
-                                      view_of(body_velocity), view_of(result)});
+               BodyDefectOp<double>{stages.numbers().system, stages.numbers().block_contacts,
+                                    view_of(s.jacobian), view_of(s.load), view_of(r),
+                                    view_of(body_velocity), view_of(result)});
     return result;
   }
   template <class Exec>
@@ -75,22 +75,22 @@ struct Relaxation {
                   double relaxation,
                   const Numbers& defect,
                   Numbers body_velocity) const {
-    body_relax(exec, first, last,
-               BodyRelaxBody<double>{view_of(stages.structure.dof_start),
-                                     view_of(stages.structure.inverse_start),
-                                     view_of(stages.system.inverse), relaxation, view_of(defect),
-                                     view_of(body_velocity)});
+    body_relax(
+        exec, first, last,
+        BodyRelaxOp<double>{view_of(stages.structure.dof_start),
+                            view_of(stages.structure.inverse_start), view_of(stages.system.inverse),
+                            relaxation, view_of(defect), view_of(body_velocity)});
     return body_velocity;
   }
   template <class Exec>
   Numbers velocity_from_impulse(const Exec& exec) const {
     const Numbers r = by_slot(impulse);
     Numbers result(stages.system.load.size());
-    body_relax(exec, 0, block_count(),
-               BodyVelocityBody<double>{stages.numbers().block_contacts,
-                                        view_of(stages.structure.dof_start),
-                                        view_of(stages.system.response), view_of(r),
-                                        view_of(stages.system.body_free), view_of(result)});
+    body_relax(
+        exec, 0, block_count(),
+        BodyVelocityOp<double>{stages.numbers().block_contacts, view_of(stages.structure.dof_start),
+                               view_of(stages.system.response), view_of(r),
+                               view_of(stages.system.body_free), view_of(result)});
     return result;
   }
 
@@ -130,15 +130,14 @@ TEST(BodyRelax, AStepIsTheDefectAndItsRelaxation) {
     Numbers defect(x.size()), v(x.size(), -1.0);
     const ContactStructure& s = c.stages.structure;
 
-    body_relax(
-        exec, 0, c.block_count(),
-        BodyStepBody<double>{{c.stages.numbers().system, c.stages.numbers().block_contacts,
-                              view_of(c.stages.system.jacobian), view_of(c.stages.system.load),
-                              view_of(r), view_of(x), view_of(defect)},
-                             view_of(s.inverse_start),
-                             view_of(c.stages.system.inverse),
-                             0.5,
-                             view_of(v)});
+    body_relax(exec, 0, c.block_count(),
+               BodyStepOp<double>{{c.stages.numbers().system, c.stages.numbers().block_contacts,
+                                   view_of(c.stages.system.jacobian), view_of(c.stages.system.load),
+                                   view_of(r), view_of(x), view_of(defect)},
+                                  view_of(s.inverse_start),
+                                  view_of(c.stages.system.inverse),
+                                  0.5,
+                                  view_of(v)});
 
     EXPECT_EQ(v, c.relaxed(exec, 0, c.block_count(), 0.5, c.defect(exec, x), x));
   }
@@ -244,7 +243,7 @@ TEST(BodyRelax, HasTheSameBitsInAnyOrderAndForAnyNumberOfThreads) {
   const auto step = [&](const auto& executor) {
     Numbers v = start;
     body_relax(executor, 0, points,
-               BodyRelaxBody<double>{
+               BodyRelaxOp<double>{
                    view_of(stages.structure.dof_start), view_of(stages.structure.inverse_start),
                    view_of(stages.system.inverse), 0.7, view_of(stages.system.load), view_of(v)});
     return v;

@@ -45,7 +45,7 @@ struct BoundCase {
   double draw(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   }
-  ContactResidualBody<double> natural(const double* r, const double* u) const {
+  ContactResidualOp<double> natural(const double* r, const double* u) const {
     return {{&known, 1}, {}, {r, 3}, {u, 3}, {zero, 3}};
   }
 
@@ -62,7 +62,7 @@ TEST(ContactBound, EtaIsAtMostTheBound) {
     ASSERT_LE(eta_square(c.exact, {}, c.impulse, c.consistent), 1e-24) << seed;
 
     const double bound =
-        ResidualBoundBody{c.natural(c.impulse, c.velocity), {c.consistent, 3}}(0).eta;
+        ResidualBoundOp{c.natural(c.impulse, c.velocity), {c.consistent, 3}}(0).eta;
 
     const double eta = eta_square(c.exact, {}, c.impulse, c.velocity);
     EXPECT_LE(eta, (1 + 1e-9) * bound + 1e-24) << seed;
@@ -76,7 +76,7 @@ TEST(ContactBound, TheEtaOfNoImpulsesIsAtLeastTheBound) {
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     const BoundCase c(seed);
 
-    const double bound = FreeResidualBoundBody{c.natural(BoundCase::zero, c.velocity)}(0).eta;
+    const double bound = FreeResidualBoundOp{c.natural(BoundCase::zero, c.velocity)}(0).eta;
 
     const double eta = eta_square(c.exact, {}, BoundCase::zero, c.velocity);
     EXPECT_GE(eta, bound) << seed;

@@ -60,15 +60,14 @@ Swept sweep(const Exec& exec,
   Swept swept = {std::vector<double>(system.free_velocity.size()), system.body_free};
   for (int s = 0; s < sweeps; ++s) {
     if (stages.structure.is_local) {
-      contact_sweep(
-          exec, colors,
-          DelassusSweepBody<double>{stages.numbers().delassus, view_of(system.constants),
-                                    switches_of(options), frozen, view_of(swept.impulse)});
+      contact_sweep(exec, colors,
+                    DelassusSweepOp<double>{stages.numbers().delassus, view_of(system.constants),
+                                            switches_of(options), frozen, view_of(swept.impulse)});
     } else {
       contact_sweep(exec, colors,
-                    BodySweepBody<double>{stages.numbers().bodies, view_of(system.constants),
-                                          switches_of(options), frozen, view_of(swept.impulse),
-                                          view_of(swept.body_velocity)});
+                    BodySweepOp<double>{stages.numbers().bodies, view_of(system.constants),
+                                        switches_of(options), frozen, view_of(swept.impulse),
+                                        view_of(swept.body_velocity)});
     }
   }
   return swept;

@@ -28,7 +28,7 @@ def write_nifti(path, value_of):
 
 
 def radius_of(i, j, k):
-    """Distance from the centre, 1 on the head's surface."""
+    """Distance from the center, 1 on the head's surface."""
     return sum(((x - (n - 1) / 2) / (0.4 * n)) ** 2 for x, n in zip((i, j, k), DIMS)) ** 0.5
 
 

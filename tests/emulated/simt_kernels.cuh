@@ -27,7 +27,7 @@ __device__ __forceinline__ int clamped(int i, int count) {
   return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-/// Sum of each voxel's four neighbours in a clamped image, from a shared tile with a halo.
+/// Sum of each voxel's four neighbors in a clamped image, from a shared tile with a halo.
 __global__ void __launch_bounds__(128) stencil_kernel(const int* in, int* out, int nx, int ny) {
   __shared__ int tile[10][18];
   const int tile_x = static_cast<int>(blockIdx.x) * 16 - 1;
@@ -89,7 +89,7 @@ __global__ void extremes_kernel(const int* values, int* low, int* high) {
   atomicMax(high, values[threadIdx.x]);
 }
 
-/// Each lane passes a value to its left neighbour through shared memory.
+/// Each lane passes a value to its left neighbor through shared memory.
 template <bool has_barrier>
 __global__ void neighbor_kernel(unsigned* out) {
   __shared__ unsigned values[32];

@@ -16,7 +16,7 @@
 namespace tetwarp::test {
 namespace {
 /// One index = one tetrahedron: the number of its candidate pairs, if it has moved.
-struct CandidateBody {
+struct CandidateOp {
   View<const std::int64_t> offsets;
   View<const std::uint8_t> moved;  ///< size 0: all have
 
@@ -63,7 +63,7 @@ Made make_list(const Stages<CpuExec>& stages,
   const std::int64_t tets = stages.setups.size, cells = frame.cell_count();
   CudaExec exec(0);
   Sums candidate_sums(tets), cell_sums(cells);
-  exec.grouped_scan("test", tets, CandidateBody{stages.pair_offsets, moved}, candidate_sums.view());
+  exec.grouped_scan("test", tets, CandidateOp{stages.pair_offsets, moved}, candidate_sums.view());
   const auto places = static_cast<std::size_t>(capacity);
   const auto count = static_cast<std::size_t>(cells);
   std::vector<CellPair> candidates(places), placed(places);
@@ -71,8 +71,7 @@ Made make_list(const Stages<CpuExec>& stages,
   std::vector<std::uint8_t> touched(count);
   std::vector<std::int64_t> fresh(4), accepted(4), touched_count(4), size(1);
   Made made{std::vector<CellPair>(places), std::vector<CellRange>(count + 1)};
-  cell_list(exec, candidate_sums.view(),
-            CellCullBody<Verdict>{stages.setups, verdict, {}, frame, {}},
+  cell_list(exec, candidate_sums.view(), CellCullOp<Verdict>{stages.setups, verdict, {}, frame, {}},
             {whole_view(candidates), whole_view(numbers), whole_view(counts), cell_sums.view(),
              whole_view(placed)},
             {{},

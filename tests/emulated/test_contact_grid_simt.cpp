@@ -29,14 +29,14 @@ TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
   std::vector<double> velocity(impulse.size());
   CpuExec cpu(1);
   cpu.for_each("", island.contact_count(),
-               ContactVelocityBody<DelassusView<double>, double>{
+               ContactVelocityOp<DelassusView<double>, double>{
                    scene.system.numbers(scene.structure.indices()).delassus, impulse.data(),
                    view_of(velocity)});
-  const ContactResidualBody<double> body = {view_of(scene.system.constants),
-                                            {},
-                                            view_of(std::as_const(impulse)),
-                                            view_of(std::as_const(velocity)),
-                                            view_of(scene.system.free_velocity)};
+  const ContactResidualOp<double> body = {view_of(scene.system.constants),
+                                          {},
+                                          view_of(std::as_const(impulse)),
+                                          view_of(std::as_const(velocity)),
+                                          view_of(scene.system.free_velocity)};
   std::vector<double> first;
   simt::for_each_schedule([&](const simt::Schedule&) {
     CudaExec exec(0, StageClocks::off);

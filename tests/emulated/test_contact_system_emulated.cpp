@@ -151,7 +151,7 @@ TEST(ContactSystemEmulated, TheHostGoesOnWhereTheDeviceStops) {
   EXPECT_EQ(found.outcome.sweeps, built_on_host.outcome.sweeps);
 }
 
-/// A contact far from the centre of the last rigid box, which would drive it away and turn it by
+/// A contact far from the center of the last rigid box, which would drive it away and turn it by
 /// more than half a turn: of the box and a frame, or of an elastic block and the box.
 HandScene hit_box(bool by_elastic_block) {
   HandScene scene = stack_on_frame(1);

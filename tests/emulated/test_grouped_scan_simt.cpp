@@ -9,7 +9,7 @@
 
 namespace tetwarp::test {
 namespace {
-struct CountBody {
+struct CountOp {
   View<const std::int64_t> counts;
   View<std::int64_t> totals;
 
@@ -18,9 +18,9 @@ struct CountBody {
 };
 
 /// Four lanes have the count in the one of that number.
-struct FourLanesBody {
+struct FourLanesOp {
   static constexpr int lanes = 4;
-  CountBody one;
+  CountOp one;
 
   template <class Lanes>
   TETWARP_HD std::int64_t operator()(std::int64_t i, const Lanes& four) const {
@@ -32,7 +32,7 @@ struct FourLanesBody {
 };
 
 /// The segment of every item.
-struct SegmentBody {
+struct SegmentOp {
   View<std::int64_t> segments;
 
   TETWARP_HD void operator()(std::int64_t segment, std::int64_t, std::int64_t item) const {
@@ -40,11 +40,11 @@ struct SegmentBody {
   }
 };
 
-template <class Body>
+template <class Op>
 void expect_sums_of(const std::vector<std::int64_t>& counts,
                     std::int64_t size,
                     int shift,
-                    const Body& body,
+                    const Op& op,
                     const std::vector<std::int64_t>& totals) {
   const auto groups = static_cast<unsigned>(group_count(size, shift));
   std::vector<std::int64_t> within(counts.size() + 1), of_groups(groups + 1);
@@ -52,7 +52,7 @@ void expect_sums_of(const std::vector<std::int64_t>& counts,
   const GroupedSums sums{
       {within.data(), size + 1}, {of_groups.data(), groups + 1}, size + 1, shift};
 
-  launch(nullptr, grouped_scan_kernel<Body>, groups, sum_group, 0, size, body, sums, &ticket);
+  launch(nullptr, grouped_scan_kernel<Op>, groups, sum_group, 0, size, op, sums, &ticket);
 
   std::int64_t sum = 0;
   for (std::int64_t i = 0; i < size; ++i) {
@@ -72,10 +72,10 @@ TEST(GroupedScanSimt, SumsTheCountsBeforeEachInEveryOrder) {
       counts[i] = static_cast<std::int64_t>(i * i % 7) << (i % 5 == 0 ? 33 : 0);
     }
     std::vector<std::int64_t> totals(sum_group);
-    const CountBody body{{counts.data(), size}, {totals.data(), sum_group}};
+    const CountOp body{{counts.data(), size}, {totals.data(), sum_group}};
     simt::for_each_schedule([&](const simt::Schedule&) {
       expect_sums_of(counts, size, sum_shift, body, totals);
-      expect_sums_of(counts, size, sum_shift - 2, FourLanesBody{body}, totals);
+      expect_sums_of(counts, size, sum_shift - 2, FourLanesOp{body}, totals);
     });
   }
 }
@@ -96,8 +96,8 @@ TEST(EachItemSimt, FindsTheSegmentOfEveryItem) {
       const View<const std::int64_t> view{offsets.data(), size + 1};
       const auto blocks = static_cast<unsigned>((items + each_threads) / each_threads);
 
-      launch(nullptr, each_item_kernel<View<const std::int64_t>, SegmentBody>, blocks, each_threads,
-             0, view, room, SegmentBody{{found.data(), room}});
+      launch(nullptr, each_item_kernel<View<const std::int64_t>, SegmentOp>, blocks, each_threads,
+             0, view, room, SegmentOp{{found.data(), room}});
 
       EXPECT_EQ(found, want) << size << " segments";
     }

@@ -66,7 +66,7 @@ void expect_equal_course(const Scene& scene, int steps) {
   EXPECT_NEAR(a.energy.work, b.energy.work, 1e-9);
   EXPECT_NEAR(a.energy.total(), b.energy.total(), 1e-8);
   for (std::size_t k = 0; k < a.bodies.size(); ++k) {
-    EXPECT_LE(distance_of(a.bodies[k].centre, b.bodies[k].centre), 1e-11);
+    EXPECT_LE(distance_of(a.bodies[k].center, b.bodies[k].center), 1e-11);
     EXPECT_LE(distance_of(a.bodies[k].support_force, b.bodies[k].support_force), 1e-6);
     EXPECT_LE(distance_of(a.bodies[k].handle_force, b.bodies[k].handle_force), 1e-6);
     EXPECT_LE(distance_of(a.bodies[k].coupling_force, b.bodies[k].coupling_force), 1e-6);
@@ -181,7 +181,7 @@ TEST(SimulatorEmulated, BodiesThatTouchStartAsOnTheCpu) {
   scene.thickness = 1e-3;
   scene.obstacles = {{"floor", PlaneObstacle{}, {}, {}}};
   Simulator cpu(scene, on(Backend::cpu)), cuda(scene, on(Backend::cuda));
-  EXPECT_NEAR(cpu.record().bodies[0].centre[2], 0.051, 1e-5);
+  EXPECT_NEAR(cpu.record().bodies[0].center[2], 0.051, 1e-5);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     expect_near(cpu.node_positions(b), cuda.node_positions(b), 1e-12);
   }

@@ -23,7 +23,7 @@ namespace tetwarp::simt {
 
 constexpr unsigned warp_size = 32;
 
-/// Error of a kernel whose behaviour is undefined on a GPU, or that would hang it.
+/// Error of a kernel whose behavior is undefined on a GPU, or that would hang it.
 class Fault : public std::runtime_error {
  public:
   explicit Fault(const std::string& problem) : std::runtime_error("simt: " + problem) {}

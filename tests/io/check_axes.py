@@ -67,11 +67,11 @@ def points_of(affine):
     return index @ affine[:3, :3].T + affine[:3, 3]
 
 
-def write_box(path, centre):
-    """A box around every grid above, displaced by a rotation about `centre`."""
+def write_box(path, center):
+    """A box around every grid above, displaced by a rotation about `center`."""
     corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float)
-    points = centre + 60 * corners
-    moved = (points - centre) @ TURN.T + centre
+    points = center + 60 * corners
+    moved = (points - center) @ TURN.T + center
     with h5py.File(path, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = np.array([1, 0])
@@ -85,9 +85,9 @@ def write_box(path, centre):
         root["PointData/displacement"] = moved - points
 
 
-def rest_of(points, centre):
+def rest_of(points, center):
     """Where the material at `points` was before the rotation."""
-    return (points - centre) @ TURN + centre
+    return (points - center) @ TURN + center
 
 
 def expect(what, found, expected, tolerance):
@@ -134,7 +134,7 @@ def sitk_image(samples, affine):
     return image
 
 
-def check_vectors(files, affine, centre):
+def check_vectors(files, affine, center):
     """SimpleITK writes and reads vectors along LPS."""
     points = points_of(affine)
     field = points @ SLOPE.T + VECTOR  # RAS
@@ -146,14 +146,14 @@ def check_vectors(files, affine, centre):
     inner = [(i, j, k) for i in (3, 4, 5) for j in (3, 4) for k in (2, 3, 4)]
     for index in inner:
         place = LPS @ np.array(found.TransformIndexToPhysicalPoint(index))
-        expected = LPS @ TURN @ (SLOPE @ rest_of(place, centre) + VECTOR)
+        expected = LPS @ TURN @ (SLOPE @ rest_of(place, center) + VECTOR)
         worst = np.max(np.abs(np.array(found.GetPixel(index)) - expected))
         if not worst < 2e-5:
             sys.exit(f"vector at {index}: differs by {worst}")
     print(f"  vectors read by SimpleITK: {len(inner)} voxels")
 
 
-def check_displacement(files, centre):
+def check_displacement(files, center):
     """Either export of the displacement gives SimpleITK the same transform."""
     files("warp", "in.vtkhdf", "mesh.vtkhdf", "-o", "field.vtkhdf", "--outputs", "displacement")
     for axes in (), ("--axes", "lps"), ("--axes", "ras"):
@@ -161,11 +161,11 @@ def check_displacement(files, centre):
         image = sitk.ReadImage(files.path("field.nii"), sitk.sitkVectorFloat64)
         place = np.array(image.TransformIndexToPhysicalPoint((4, 4, 3)))
         moved = sitk.DisplacementFieldTransform(image).TransformPoint(place.tolist())
-        expected = LPS @ rest_of(LPS @ place, centre)
+        expected = LPS @ rest_of(LPS @ place, center)
         expect(f"displacement {' '.join(axes) or 'as by default'}", moved, expected, 1e-4)
 
 
-UNITS = {"mm": 1.0, "micron": 1e-3, "meter": 1e3}  # in ITK's millimetres
+UNITS = {"mm": 1.0, "micron": 1e-3, "meter": 1e3}  # in ITK's millimeters
 
 
 def orientations():
@@ -189,7 +189,7 @@ def field_cases():
 
 
 def check_fields(files):
-    """ITK applies displacement fields in millimetres, along the axes in which it places the image:
+    """ITK applies displacement fields in millimeters, along the axes in which it places the image:
     LPS, but where the header has no form, the header's own."""
     worst = 0.0
     for matrix, origin, unit, dims, has_form in field_cases():
@@ -201,8 +201,8 @@ def check_fields(files):
         image.header.set_xyzt_units(unit)
         nibabel.save(image, files.path("head.nii"))
         index = np.array([4, 4, 3 if len(dims) == 3 and dims[2] > 1 else 0])
-        centre = origin + matrix @ index + [0.3, -0.2, 0]
-        write_box(files.path("mesh.vtkhdf"), centre)
+        center = origin + matrix @ index + [0.3, -0.2, 0]
+        write_box(files.path("mesh.vtkhdf"), center)
         to_itk = UNITS[unit] * (LPS if has_form else np.eye(3))
         is_flat = index[2] == 0
         files("warp", "head.nii", "mesh.vtkhdf", "-o", "out.nii", "--outputs",
@@ -221,9 +221,9 @@ def check_fields(files):
             place = np.array(read.TransformIndexToPhysicalPoint(index[:axes].tolist()))
             moved = sitk.DisplacementFieldTransform(read).TransformPoint(place.tolist())
             world = matrix @ index + origin
-            rest = rest_of(world, centre)
+            rest = rest_of(world, center)
             if name == "out_forward.nii":
-                rest = (world - centre) @ TURN.T + centre
+                rest = (world - center) @ TURN.T + center
             error = np.abs(np.array(moved) - (to_itk @ rest)[:axes]).max() / UNITS[unit]
             worst = max(worst, error)
             if not error < 1e-4:
@@ -231,11 +231,11 @@ def check_fields(files):
     print(f"fields for ITK, worst: {worst:.1e} units")
 
 
-def check_tensors(files, affine, centre, axes):
+def check_tensors(files, affine, center, axes):
     """nibabel writes and reads tensors in NIfTI's order, along RAS or LPS."""
     turn = LPS if axes == "lps" else np.eye(3)
     points = points_of(affine)
-    scale = 1 + (points - centre) @ GROWTH
+    scale = 1 + (points - center) @ GROWTH
     stored = scale[..., None] * (turn @ TENSOR @ turn)[NIFTI_ROWS, NIFTI_COLUMNS]
     image = nibabel.Nifti1Image(stored[:, :, :, None, :].astype(np.float32), None)
     image.set_sform(affine, code=4)
@@ -248,7 +248,7 @@ def check_tensors(files, affine, centre, axes):
     files.warp("tensors.nii", "--tensors", "values", axes=("--axes", axes))
 
     found = nibabel.load(files.path("out.nii"))
-    rest_scale = 1 + (rest_of(points_of(found.affine), centre) - centre) @ GROWTH
+    rest_scale = 1 + (rest_of(points_of(found.affine), center) - center) @ GROWTH
     tensor = turn @ TURN @ TENSOR @ TURN.T @ turn
     expected = rest_scale[..., None] * tensor[NIFTI_ROWS, NIFTI_COLUMNS]
     inner = (slice(3, 6), slice(3, 5), slice(2, 5))
@@ -264,14 +264,14 @@ def main(command):
         files = Files(command, folder)
         for name, affine in affines():
             print(name)
-            centre = (affine @ np.append((np.array(DIMS) - 1) / 2, 1))[:3]
-            write_box(files.path("mesh.vtkhdf"), centre)
+            center = (affine @ np.append((np.array(DIMS) - 1) / 2, 1))[:3]
+            write_box(files.path("mesh.vtkhdf"), center)
             for axes in "ras", "lps":
-                check_tensors(files, affine, centre, axes)
+                check_tensors(files, affine, center, axes)
             if name == "sheared":  # ITK reads and writes no shear
                 continue
-            check_vectors(files, affine, centre)
-            check_displacement(files, centre)
+            check_vectors(files, affine, center)
+            check_displacement(files, center)
         check_fields(files)
 
 

@@ -102,11 +102,11 @@ void damage_file(const std::string& path, test::Random& random) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
-/// True when `body` ends without IoError.
-template <class Body>
-bool reads(const Body& body) {
+/// True when `op` ends without IoError.
+template <class Op>
+bool reads(const Op& op) {
   try {
-    body();
+    op();
     return true;
   } catch (const IoError& error) {
     if (std::strchr(error.what(), '\n') != nullptr) throw std::runtime_error(error.what());

@@ -42,10 +42,10 @@ TEST(ItkWarp, ResamplingByTheExportedFieldIsTheWarp) {
   output_grid.spacing = {0.9 * source_grid.spacing[0], 0.8 * source_grid.spacing[1],
                          1.1 * source_grid.spacing[2]};
   output_grid.direction = {0, -1, 0, 0.6, 0, -0.8, 0.8, 0, 0.6};
-  const Point3 centre = source_grid.world_of({12, 10, 11});
+  const Point3 center = source_grid.world_of({12, 10, 11});
   const Point3 half = output_grid.world_of({10, 13, 8});
   for (std::size_t axis = 0; axis < 3; ++axis)
-    output_grid.origin[axis] += centre[axis] - half[axis];
+    output_grid.origin[axis] += center[axis] - half[axis];
   const Volume source = scenes::wavy_volume(source_grid, PixelType::float32);
   const Mesh mesh = covering_mesh(source_grid);
   const std::vector<Point3> deformed =

@@ -87,7 +87,7 @@ def unreached(compiled, reached, own, public):
 def test():
     assert plain_name("tetwarp::View<int const>::size() const") == "tetwarp::View::size"
     assert plain_name("void tetwarp::(anonymous namespace)::f<int>(int)") == "tetwarp::f"
-    assert plain_name("tetwarp::AddBody::operator()(long) const") == "tetwarp::AddBody::operator_call"
+    assert plain_name("tetwarp::AddOp::operator()(long) const") == "tetwarp::AddOp::operator_call"
     assert plain_name("tetwarp::Volume::Volume(int)") is None
     assert plain_name("std::vector<tetwarp::Volume>::size() const") is None
     compiled = {"tetwarp::f", "tetwarp::g", "tetwarp::h", "tetwarp::helper_of_test"}

@@ -69,18 +69,18 @@ TEST(ShippedScenes, TorsoIsOnePersonOfTissueWithItsBaseFixed) {
   const auto samples = image.volume.samples<float>();
   const auto inside =
       std::count_if(samples.begin(), samples.end(), [&](float s) { return s >= image.threshold; });
-  const double litres = 1e3 * 1.5e-3 * 1.5e-3 * 1.5e-3 * static_cast<double>(inside);
-  EXPECT_NEAR(litres, 7, 1);
+  const double liters = 1e3 * 1.5e-3 * 1.5e-3 * 1.5e-3 * static_cast<double>(inside);
+  EXPECT_NEAR(liters, 7, 1);
   const auto& base = std::get<BoxSelection>(torso.bodies[0].fixed.at(0));
   EXPECT_EQ(base.high[2], 0.01);
   const Handle& liver = torso.handles.at(0);
   EXPECT_EQ(liver.path.at(1).displacement, (Point3{0.03, 0, 0}));
   EXPECT_FALSE(liver.path.back().displacement);
   // The sphere lies in the phantom's liver, gray level 0.55.
-  const Point3 centre = std::get<SphereSelection>(liver.select.at(0)).centre;
+  const Point3 center = std::get<SphereSelection>(liver.select.at(0)).center;
   std::size_t voxel = 0;
   for (const std::size_t axis : {2, 1, 0}) {
-    const auto index = static_cast<std::size_t>(std::lround(centre[axis] / 1.5e-3));
+    const auto index = static_cast<std::size_t>(std::lround(center[axis] / 1.5e-3));
     voxel = voxel * static_cast<std::size_t>(image.volume.grid.dims[axis]) + index;
   }
   EXPECT_NEAR(samples[voxel], 0.55, 0.1);

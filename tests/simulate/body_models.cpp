@@ -148,7 +148,7 @@ std::int32_t add_sheet(Model& model, int cells, double edge, double stiffness, d
   return first;
 }
 
-std::int32_t add_rigid(Model& model, double mass, const Point3& moments, const Point3& centre) {
+std::int32_t add_rigid(Model& model, double mass, const Point3& moments, const Point3& center) {
   model.body_node.push_back(model.node_count);
   model.body_rigid.push_back(model.rigid_count);
   model.body_island.push_back(model.island_count++);
@@ -156,7 +156,7 @@ std::int32_t add_rigid(Model& model, double mass, const Point3& moments, const P
   model.rigid.mass.push_back(mass);
   model.rigid.inertia.push_back(moments);
   model.rigid.alpha.push_back(0);
-  model.start.position.push_back(centre);
+  model.start.position.push_back(center);
   model.start.rotation.push_back({1, 0, 0, 0});
   model.start.angular_momentum.push_back({0, 0, 0});
   ++model.rigid_count;

@@ -24,7 +24,7 @@ Model empty_model();
 std::int32_t add_block(Model& model, const BlockOptions& options);
 /// Appends a rigid body of its own island; before any rigid body, all blocks have been added.
 /// @returns its number
-std::int32_t add_rigid(Model& model, double mass, const Point3& moments, const Point3& centre);
+std::int32_t add_rigid(Model& model, double mass, const Point3& moments, const Point3& center);
 /// Appends a spring; the islands of both bodies become one.
 void add_spring(
     Model& model, const ModelPoint& a, const ModelPoint& b, double stiffness, double damping = 0);

@@ -34,8 +34,8 @@ Point3 HandScene::place_of(std::int32_t body,
   if (point.is_rigid()) {
     const std::int32_t frame = model.body_rigid[at(body)];
     const Point3 arm = rotate(state.rotation[at(frame)], point.local);
-    const Point3& centre = state.position[at(model.node_count + frame)];
-    for (std::size_t i = 0; i < 3; ++i) place[i] = centre[i] + arm[i];
+    const Point3& center = state.position[at(model.node_count + frame)];
+    for (std::size_t i = 0; i < 3; ++i) place[i] = center[i] + arm[i];
     return place;
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -118,8 +118,8 @@ MaterialPoint on_rigid(const Point3& local) {
   return point;
 }
 
-std::int32_t add_frame(Model& model, const Point3& centre) {
-  const std::int32_t frame = add_rigid(model, 0, {0, 0, 0}, centre);
+std::int32_t add_frame(Model& model, const Point3& center) {
+  const std::int32_t frame = add_rigid(model, 0, {0, 0, 0}, center);
   model.body_island.back() = -1;
   --model.island_count;
   prescribe(model, model.node_count + 2 * frame);

@@ -21,7 +21,7 @@ inline std::size_t at(std::int64_t index) {
 struct Touch {
   std::int32_t body_a = 0, body_b = 0;
   MaterialPoint point_a, point_b;  ///< vertices of deformable bodies are their nodes from 0 on;
-                                   ///< `local` of rigid ones is from the centre in principal axes
+                                   ///< `local` of rigid ones is from the center in principal axes
   Point3 normal{0, 0, 1};          ///< from b to a
   double area = 0;                 ///< [m^2]
   std::int32_t material = 0;
@@ -56,7 +56,7 @@ MaterialPoint on_nodes(const std::array<std::int32_t, 3>& vertex,
 MaterialPoint on_rigid(const Point3& local);
 
 /// Appends a frame without mass, whose velocity is prescribed. @returns its number
-std::int32_t add_frame(Model& model, const Point3& centre);
+std::int32_t add_frame(Model& model, const Point3& center);
 /// Prescribes the velocity of a node.
 void prescribe(Model& model, std::int32_t block);
 

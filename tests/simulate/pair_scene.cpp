@@ -80,9 +80,9 @@ std::int32_t PairScene::add_mesh(const std::vector<Point3>& vertices,
   return scene.body_count() - 1;
 }
 
-std::int32_t PairScene::add_sphere(const Point3& centre, double radius, const Kind& kind) {
+std::int32_t PairScene::add_sphere(const Point3& center, double radius, const Kind& kind) {
   begin(kind);
-  add_vertex(centre, radius, kind);
+  add_vertex(center, radius, kind);
   end();
   return scene.body_count() - 1;
 }

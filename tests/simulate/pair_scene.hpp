@@ -27,7 +27,7 @@ struct PairScene {
   std::int32_t add_mesh(const std::vector<Point3>& vertices,
                         const std::vector<std::array<std::int32_t, 3>>& triangles,
                         const Kind& kind);
-  std::int32_t add_sphere(const Point3& centre, double radius, const Kind& kind);
+  std::int32_t add_sphere(const Point3& center, double radius, const Kind& kind);
   std::int32_t add_capsule(const Point3& p, const Point3& q, double radius, const Kind& kind);
   std::int32_t add_plane(const Point3& point, const Point3& normal);
 

@@ -180,7 +180,7 @@ class RandomContacts {
     bodies_of_.bodies = view(bodies_);
     bodies_of_.body_of_row = view(body_of_row_);
     bodies_of_.row_of_node = view(row_of_node_);
-    const ComplianceBlockBody fill{bodies_of_, view(compliance_)};
+    const ComplianceBlockOp fill{bodies_of_, view(compliance_)};
     for (std::size_t node = 0; node < row_of_node_.size(); ++node) {
       const CompliantBody& own = bodies_[static_cast<std::size_t>(body_of_row_[node])];
       for (std::int32_t k = 0; k < own.node_count; ++k) fill(static_cast<std::int64_t>(node), k, 0);

@@ -20,7 +20,7 @@ inline std::vector<Backend> usable_backends() {
   return usable;
 }
 
-inline Point3 centre_of(const Grid& grid) {
+inline Point3 center_of(const Grid& grid) {
   Point3 middle;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     middle[axis] = (static_cast<double>(grid.dims[axis]) - 1) / 2;
@@ -28,14 +28,14 @@ inline Point3 centre_of(const Grid& grid) {
   return grid.world_of(middle);
 }
 
-/// A mesh over all of the source, moved by `linear` about the source's centre.
+/// A mesh over all of the source, moved by `linear` about the source's center.
 inline scenes::Scene affine_scene(const Grid& source,
                                   const Grid& output,
                                   const Eigen::Matrix3d& linear) {
   scenes::Scene scene = {"affine", covering_mesh(source), {}, source, output};
-  const Eigen::Vector3d centre = vector_of(centre_of(source));
+  const Eigen::Vector3d center = vector_of(center_of(source));
   for (const Point3& p : scene.mesh.rest_positions) {
-    const Eigen::Vector3d x = centre + linear * (vector_of(p) - centre);
+    const Eigen::Vector3d x = center + linear * (vector_of(p) - center);
     scene.deformed.push_back({x(0), x(1), x(2)});
   }
   return scene;

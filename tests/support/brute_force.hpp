@@ -54,8 +54,8 @@ inline bool is_inside(const TetQuanta& tet, const Quanta& x) {
   return true;
 }
 
-/// Voxel centre (i, j, k).
-inline Quanta voxel_centre(std::int64_t i, std::int64_t j, std::int64_t k) {
+/// Voxel center (i, j, k).
+inline Quanta voxel_center(std::int64_t i, std::int64_t j, std::int64_t k) {
   return {i * quanta, j * quanta, k * quanta};
 }
 

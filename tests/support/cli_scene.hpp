@@ -24,7 +24,7 @@ Volume ramp_volume(const std::string& name = "density") {
 }
 
 /// A box of five tetrahedra from half a voxel before the first to half a voxel behind the last
-/// voxel centre of the ramp volume.
+/// voxel center of the ramp volume.
 inline Mesh box_mesh() {
   Mesh mesh;
   for (int node = 0; node < 8; ++node) {

@@ -35,14 +35,14 @@ struct ContactStages {
 
 /// The last index first.
 struct ReversedExec {
-  template <class Body>
-  void for_each(const char*, std::int64_t count, const Body& body) const {
-    for (std::int64_t i = count; i-- > 0;) body(i);
+  template <class Op>
+  void for_each(const char*, std::int64_t count, const Op& op) const {
+    for (std::int64_t i = count; i-- > 0;) op(i);
   }
-  template <class Sum, class Body>
-  Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+  template <class Sum, class Op>
+  Sum sum(const char*, std::int64_t first, std::int64_t last, const Op& op) const {
     Sum sum{};
-    for (std::int64_t i = last; i-- > first;) sum += body(i);
+    for (std::int64_t i = last; i-- > first;) sum += op(i);
     return sum;
   }
 };

@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Corners of a cube by bits x + 2 y + 4 z. The middle tetrahedron takes every second corner;
-/// neighbouring cubes take turns, so that the diagonals of their common faces agree.
+/// neighboring cubes take turns, so that the diagonals of their common faces agree.
 constexpr int split[2][5][4] = {
     {{0, 3, 5, 6}, {1, 0, 3, 5}, {2, 0, 3, 6}, {4, 0, 5, 6}, {7, 3, 5, 6}},
     {{1, 2, 4, 7}, {0, 1, 2, 4}, {3, 1, 2, 7}, {5, 1, 4, 7}, {6, 2, 4, 7}}};

@@ -201,10 +201,10 @@ class Hdf5Editor {
   hid_t file_;
 };
 
-/// The line of the IoError that `body` throws; empty when it throws none.
-template <class Body>
-std::string io_error(const Body& body) {
-  return message_of<IoError>(body);
+/// The line of the IoError that `op` throws; empty when it throws none.
+template <class Op>
+std::string io_error(const Op& op) {
+  return message_of<IoError>(op);
 }
 
 }  // namespace tetwarp::test

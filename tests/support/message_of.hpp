@@ -6,11 +6,11 @@
 
 namespace tetwarp::test {
 
-/// The text of the Error that `body` throws; empty when it throws none.
-template <class Error = std::invalid_argument, class Body>
-std::string message_of(const Body& body) {
+/// The text of the Error that `op` throws; empty when it throws none.
+template <class Error = std::invalid_argument, class Op>
+std::string message_of(const Op& op) {
   try {
-    body();
+    op();
   } catch (const Error& error) {
     return error.what();
   }

@@ -45,11 +45,11 @@ class Comparison {
 };
 
 inline void compare_records(const StepRecord& a, const StepRecord& b) {
-  Comparison centres, velocities, momenta, spins, forces, energies, turns;
+  Comparison centers, velocities, momenta, spins, forces, energies, turns;
   ASSERT_EQ(a.bodies.size(), b.bodies.size());
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
     const BodyRecord &x = a.bodies[i], &y = b.bodies[i];
-    centres.add(x.centre, y.centre);
+    centers.add(x.center, y.center);
     velocities.add(x.velocity, y.velocity);
     momenta.add(x.angular_momentum, y.angular_momentum);
     if (x.angular_momentum != Point3{}) spins.add(x.angular_velocity, y.angular_velocity);
@@ -65,7 +65,7 @@ inline void compare_records(const StepRecord& a, const StepRecord& b) {
   energies.add(a.energy.elastic, b.energy.elastic);
   energies.add(a.energy.gravity, b.energy.gravity);
   energies.add(a.energy.work, b.energy.work);
-  centres.check("centres");
+  centers.check("centers");
   velocities.check("velocities");
   momenta.check("angular momenta");
   spins.check("angular velocities");

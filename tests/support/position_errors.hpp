@@ -131,7 +131,7 @@ inline PositionErrors position_errors(const Probed& probed,
     const Real3 given = given_position(given_deformed, given_rest, ijk);
     double evaluation = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // Beyond the outermost centres the source is constant.
+      // Beyond the outermost centers the source is constant.
       const auto last = static_cast<long double>(scene.source_grid.dims[axis] - 1);
       const double expected = wave(std::clamp(rounded[axis], 0.0L, last));
       evaluation = std::max(evaluation, std::abs(probed.samples[axis][v] - expected));
@@ -145,7 +145,7 @@ inline PositionErrors position_errors(const Probed& probed,
     errors.evaluation_share = std::max(errors.evaluation_share, evaluation / evaluation_limit);
     errors.rounding = std::max(errors.rounding, rounding);
     errors.rounding_share = std::max(errors.rounding_share, rounding / rounding_limit);
-    errors.strays += !is_inside(deformed, voxel_centre(ijk[0], ijk[1], ijk[2]));
+    errors.strays += !is_inside(deformed, voxel_center(ijk[0], ijk[1], ijk[2]));
     ++errors.voxels;
   });
   return errors;

@@ -174,7 +174,7 @@ inline Real3 combined(const TetReals& rest, const std::array<long double, 4>& we
 inline Real3 rounded_position(const TetQuanta& deformed,
                               const TetQuanta& rest,
                               const std::array<std::int64_t, 3>& ijk) {
-  const Quanta x = voxel_centre(ijk[0], ijk[1], ijk[2]);
+  const Quanta x = voxel_center(ijk[0], ijk[1], ijk[2]);
   const auto whole = static_cast<long double>(part6(deformed, 0, deformed[0]));
   std::array<long double, 4> weights;
   for (std::size_t a = 0; a < 4; ++a) {

@@ -164,14 +164,14 @@ Volume ramp_volume(const Grid& grid, const std::array<double, 4>& coefficients) 
   return volume;
 }
 
-std::vector<Point3> rotated_45_45(const std::vector<Point3>& points, const Point3& centre) {
+std::vector<Point3> rotated_45_45(const std::vector<Point3>& points, const Point3& center) {
   const double h = std::sqrt(0.5);
   std::vector<Point3> result;
   for (const Point3& p : points) {
-    const double x = p[0] - centre[0], y = p[1] - centre[1], z = p[2] - centre[2];
+    const double x = p[0] - center[0], y = p[1] - center[1], z = p[2] - center[2];
     const double turned = h * (x + y);
     result.push_back(
-        {centre[0] + h * (x - y), centre[1] + h * (turned - z), centre[2] + h * (turned + z)});
+        {center[0] + h * (x - y), center[1] + h * (turned - z), center[2] + h * (turned + z)});
   }
   return result;
 }
@@ -219,7 +219,7 @@ std::vector<Scene> adversarial_scenes(std::int64_t n) {
   const Mesh loose = lattice({4, 3, 5}, {-0.5, -0.5, -0.5}, {e - 0.5, e - 3.5, e + 1.5});
   const Mesh tiny =
       lattice({24, 24, 24}, {e / 3, e / 3, e / 3}, {e / 3 + 7.3, e / 3 + 7.1, e / 3 + 6.7});
-  const Point3 centre{e / 2, e / 2, e / 2};
+  const Point3 center{e / 2, e / 2, e / 2};
   std::vector<Scene> scenes;
   const auto add = [&](const std::string& name, const Grid& on, const Mesh& mesh,
                        const std::vector<Point3>& deformed) {
@@ -229,14 +229,14 @@ std::vector<Scene> adversarial_scenes(std::int64_t n) {
   add("aligned", grid, box, shifted(box.rest_positions, {1, -2, 3}));
   add("half_voxel", grid, box, shifted(box.rest_positions, {0.5, -0.5, 1.5}));
   add("waved", grid, loose, waved(loose.rest_positions, 3.0, 11));
-  add("rotated", grid, box, rotated_45_45(box.rest_positions, centre));
+  add("rotated", grid, box, rotated_45_45(box.rest_positions, center));
   add("tiny", grid, tiny, waved(tiny.rest_positions, 0.3, 3));
   add("outside", grid, box, shifted(waved(box.rest_positions, 2.0, 5), {e * 0.6, -e * 0.4, 1.5}));
   add("oblique", oblique_grid(n, n - 3, n + 2), loose, waved(loose.rest_positions, 2.5, 17));
 
   for (const auto& [decades, thickness] : {std::pair{"1", 1e-1}, {"3", 1e-3}, {"5", 1e-5}}) {
     const Mesh thin = sliver_lattice(e, thickness);
-    add("slivers_"s + decades, grid, thin, rotated_45_45(thin.rest_positions, centre));
+    add("slivers_"s + decades, grid, thin, rotated_45_45(thin.rest_positions, center));
     add("thin_aligned_"s + decades, grid, thin, thin.rest_positions);
   }
   const Mesh random = soup(e, 60, 23);
@@ -258,7 +258,7 @@ std::vector<Scene> adversarial_scenes(std::int64_t n) {
   Grid far = grid;
   far.origin = {1e6 * e, -1e6 * e, 3e6 * e};
   far.spacing = {0.7, 0.7, 0.7};
-  add("far", far, box, rotated_45_45(box.rest_positions, centre));
+  add("far", far, box, rotated_45_45(box.rest_positions, center));
 
   // Another output grid: finer, shifted, mirrored.
   Scene other = on_grid("other_grid", grid, loose, waved(loose.rest_positions, 2.0, 31));

@@ -40,8 +40,8 @@ Volume wavy_volume(const Grid& grid, PixelType type, int components = 1);
 /// value = a + b i + c j + d k, float32: a linear ramp in index space.
 Volume ramp_volume(const Grid& grid, const std::array<double, 4>& coefficients);
 
-/// Points turned by 45 degrees about z, then about x, around a centre.
-std::vector<Point3> rotated_45_45(const std::vector<Point3>& points, const Point3& centre);
+/// Points turned by 45 degrees about z, then about x, around a center.
+std::vector<Point3> rotated_45_45(const std::vector<Point3>& points, const Point3& center);
 
 /// Points moved by smooth seeded waves of the given amplitude.
 std::vector<Point3> waved(const std::vector<Point3>& points, double amplitude, std::uint64_t seed);

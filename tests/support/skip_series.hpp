@@ -93,16 +93,16 @@ class Series {
 template <class Change>
 std::vector<Point3> changed_near(const scenes::Scene& scene,
                                  std::vector<Point3> positions,
-                                 const Point3& centre_index,
+                                 const Point3& center_index,
                                  double radius,
                                  Change&& change) {
   const Grid& grid = scene.output_grid;
-  const Point3 centre = grid.world_of(centre_index);
+  const Point3 center = grid.world_of(center_index);
   const double reach = radius * grid.spacing[0];
   for (std::size_t n = 0; n < positions.size(); ++n) {
     double square = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      square += std::pow(positions[n][axis] - centre[axis], 2);
+      square += std::pow(positions[n][axis] - center[axis], 2);
     }
     if (square <= reach * reach) change(n, positions[n]);
   }

@@ -46,32 +46,32 @@ inline Mesh jittered_lattice(const std::array<int, 3>& cells,
 }
 
 /// Undoes rotated_45_45().
-inline Point3 turned_back(const Point3& p, const Point3& centre) {
+inline Point3 turned_back(const Point3& p, const Point3& center) {
   const double h = std::sqrt(0.5);
-  const double x = p[0] - centre[0], y = p[1] - centre[1], z = p[2] - centre[2];
+  const double x = p[0] - center[0], y = p[1] - center[1], z = p[2] - center[2];
   const double turned = h * (y + z);
-  return {centre[0] + h * (x + turned), centre[1] + h * (turned - x), centre[2] + h * (z - y)};
+  return {center[0] + h * (x + turned), center[1] + h * (turned - x), center[2] + h * (z - y)};
 }
 
 /// A box jittered in two ways, one of them turned by 45 degrees about two axes: well-shaped
-/// tetrahedra, each with another map. `grid` is the source; the box lies within its centres.
+/// tetrahedra, each with another map. `grid` is the source; the box lies within its centers.
 inline Solid turned_solid(const Grid& source, const Grid& output, const std::array<int, 3>& cells) {
   Solid solid;
   solid.low = source.world_of({1, 1, 1});
-  Point3 centre;
+  Point3 center;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double last = static_cast<double>(source.dims[axis] - 2);
     solid.high[axis] = solid.low[axis] + source.spacing[axis] * (last - 1);
-    centre[axis] = (solid.low[axis] + solid.high[axis]) / 2;
+    center[axis] = (solid.low[axis] + solid.high[axis]) / 2;
   }
   const auto moved = jittered_lattice(cells, solid.low, solid.high, 0.1, 5).rest_positions;
   solid.scene = {"turned", jittered_lattice(cells, solid.low, solid.high, 0.1, 3),
-                 scenes::rotated_45_45(moved, centre), source, output};
-  solid.undone = [centre](const Point3& p) { return turned_back(p, centre); };
+                 scenes::rotated_45_45(moved, center), source, output};
+  solid.undone = [center](const Point3& p) { return turned_back(p, center); };
   return solid;
 }
 
-/// Voxels whose centre is inside the hull and has no owner, and the other way round.
+/// Voxels whose center is inside the hull and has no owner, and the other way round.
 struct CoverageErrors {
   std::int64_t holes = 0;
   std::int64_t spills = 0;

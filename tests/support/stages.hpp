@@ -144,7 +144,7 @@ class Stages {
     Exec& exec = arrays.exec();
     const View<const std::int64_t> offsets = corner_offsets;
     exec.for_each("test/mask", setups.size,
-                  CornerCountBody<View<const std::int64_t>>{setups, pair_offsets, corner_offsets});
+                  CornerCountOp<View<const std::int64_t>>{setups, pair_offsets, corner_offsets});
     exec.exclusive_scan("test/mask", corner_offsets);
     masks = arrays.template zeros<std::uint16_t>(arrays.download(corner_offsets).back());
     corner_mask(exec, setups, offsets, masks);

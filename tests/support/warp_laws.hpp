@@ -51,8 +51,8 @@ class WarpLaws : public EachBackend {
     for (std::size_t v = 0; v < tet.size(); v += stride) {
       const auto voxel = static_cast<std::int64_t>(v);
       const std::int64_t row = voxel / n[0];
-      const Quanta centre = voxel_centre(voxel % n[0], row % n[1], row / n[1]);
-      ASSERT_EQ(tet[v], owner_of(tets, centre)) << "voxel " << v;
+      const Quanta center = voxel_center(voxel % n[0], row % n[1], row / n[1]);
+      ASSERT_EQ(tet[v], owner_of(tets, center)) << "voxel " << v;
     }
   }
 

@@ -54,7 +54,7 @@ std::int64_t inside_count(const TetQuanta& tet, const Box& box) {
   for (int k = box.begin[2]; k < box.end[2]; ++k) {
     for (int j = box.begin[1]; j < box.end[1]; ++j) {
       for (int i = box.begin[0]; i < box.end[0]; ++i) {
-        count += is_inside(tet, voxel_centre(i, j, k));
+        count += is_inside(tet, voxel_center(i, j, k));
       }
     }
   }

@@ -41,7 +41,7 @@ class CellWork : public EachExec<Exec> {
     if (knows_source) map.reach = reach;
     const auto work = this->template zeros<std::int64_t>(input.frame.cell_count());
     const auto count = this->template zeros<std::int64_t>(1);
-    cell_work(this->exec(), CellWorkBody<float>{job, map, this->upload(touched), work, count});
+    cell_work(this->exec(), CellWorkOp<float>{job, map, this->upload(touched), work, count});
     return {this->download(work), this->download(count).front()};
   }
 };
@@ -94,7 +94,7 @@ TYPED_TEST(CellWork, LooksAtTheUpperNeighborOfTheLastPosition) {
   EXPECT_EQ(found.work[3], sample_cell);
 }
 
-/// Half a voxel beyond the outermost centres there is the background, another value.
+/// Half a voxel beyond the outermost centers there is the background, another value.
 TYPED_TEST(CellWork, SamplesCellsThatReachTheEndOfTheSource) {
   EXPECT_EQ(this->run(wide_tet(0.45), uniform_volume(40, 1)).constant_count, 20);
   EXPECT_EQ(this->run(wide_tet(0.55), uniform_volume(40, 1)).constant_count, 16);

@@ -53,7 +53,7 @@ TYPED_TEST(CornerMask, IsNeverWrongAndSeldomUndecided) {
       const int ny = last_cell(setups[t], 1) - first_cell(setups[t], 1) + 2;
       for (std::int64_t item = offsets[t]; item < offsets[t + 1]; ++item) {
         const std::int64_t local = item - offsets[t];
-        const Quanta x = voxel_centre((first_cell(setups[t], 0) + local % nx) * cell_edge,
+        const Quanta x = voxel_center((first_cell(setups[t], 0) + local % nx) * cell_edge,
                                       (first_cell(setups[t], 1) + local / nx % ny) * cell_edge,
                                       (first_cell(setups[t], 2) + local / nx / ny) * cell_edge);
         const Wide whole = volume6(tets[t]) < 0 ? -volume6(tets[t]) : volume6(tets[t]);

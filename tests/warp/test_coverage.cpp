@@ -1,5 +1,5 @@
 /// @file test_coverage.cpp
-/// Every voxel centre in the closed mesh has exactly one owner, none outside has one: the lowest
+/// Every voxel center in the closed mesh has exactly one owner, none outside has one: the lowest
 /// tetrahedron, decided exactly.
 #include <gtest/gtest.h>
 
@@ -75,9 +75,9 @@ TEST_P(Coverage, OwnersEqualBruteForceOnRandomVoxels) {
     const std::size_t v = anywhere ? at : covered[at];
     const auto voxel = static_cast<std::int64_t>(v);
     const std::int64_t row = voxel / grid.dims[0];
-    const Quanta centre =
-        voxel_centre(voxel % grid.dims[0], row % grid.dims[1], row / grid.dims[1]);
-    ASSERT_EQ(cpu.owner[v], owner_of(tets, centre)) << "voxel " << v;
+    const Quanta center =
+        voxel_center(voxel % grid.dims[0], row % grid.dims[1], row / grid.dims[1]);
+    ASSERT_EQ(cpu.owner[v], owner_of(tets, center)) << "voxel " << v;
   }
 }
 
@@ -139,7 +139,7 @@ TEST(CoverageFolds, CellsInsideSeveralTetrahedraGoToTheLowest) {
     const std::int64_t row = voxel / scene_size;
     const std::int64_t lines = scene.output_grid.dims[1];
     ASSERT_EQ(cpu.owner[v],
-              owner_of(tets, voxel_centre(voxel % scene_size, row % lines, row / lines)));
+              owner_of(tets, voxel_center(voxel % scene_size, row % lines, row / lines)));
   }
 }
 

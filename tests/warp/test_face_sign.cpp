@@ -106,7 +106,7 @@ TEST(FaceSign, AgreesWithBruteForceOnEveryVoxel) {
     const TetNodes nodes = nodes_of(tet);
     for (int v = 0; v < 512; ++v) {
       const int i = v & 7, j = v >> 3 & 7, k = v >> 6;
-      ASSERT_EQ(is_inside_exact(nodes, i, j, k), is_inside(tet, voxel_centre(i, j, k)));
+      ASSERT_EQ(is_inside_exact(nodes, i, j, k), is_inside(tet, voxel_center(i, j, k)));
       inside += is_inside_exact(nodes, i, j, k);
     }
   }

@@ -129,12 +129,12 @@ TEST_P(Parity, StepsThatGrowAndShrinkAreTheSame) {
   options.output_grid = scene.output_grid;
   options.backend = Backend::cuda;
   Warper warper(source, scene.mesh, options);
-  Point3 centre = scene.output_grid.world_of({20, 18, 21});
+  Point3 center = scene.output_grid.world_of({20, 18, 21});
   for (const double scale : {0.1, 1.0, 0.3, 1.0}) {
     scenes::Scene step = scene;
     for (Point3& p : step.deformed) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        p[axis] = centre[axis] + scale * (p[axis] - centre[axis]);
+        p[axis] = center[axis] + scale * (p[axis] - center[axis]);
       }
     }
 

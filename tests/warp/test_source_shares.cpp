@@ -30,7 +30,7 @@ class RandomNumbers {
 /// A voxel's box, a map to the source, and the first `planes` planes of a tetrahedron.
 struct Case {
   TetSetup tet = {};
-  double height[4] = {};  ///< of the voxel's centre over the planes
+  double height[4] = {};  ///< of the voxel's center over the planes
   int planes = 0;
   SourceMap<double> map = {};
 
@@ -195,7 +195,7 @@ TEST(SourceShares, AreTheVolumesWhereFacesMeetPlanes) {
   }
 }
 
-/// A box that is one source voxel has nothing in its neighbours.
+/// A box that is one source voxel has nothing in its neighbors.
 TEST(SourceShares, OfAVoxelAreThatVoxel) {
   Case input;
   for (int row = 0; row < 3; ++row) input.map.base[row] = input.map.axis[row][row] = 1;

@@ -76,7 +76,7 @@ T sample_at(const SourceView<T>& source, Filter filter, const std::array<double,
 }
 
 /// Number p of a seeded set of positions from `low` to `high` on each axis; every fourth on a plane
-/// of voxel centres.
+/// of voxel centers.
 std::array<double, 3> position(std::uint64_t p, double low, double high) {
   std::array<double, 3> x;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -120,7 +120,7 @@ TEST(VolumeFilter, WeightsAreThoseOfTheDefinitionAndSumToOne) {
   expect_defined_weights<double>(4e-15);
 }
 
-TEST(VolumeFilter, InterpolatingOnesHaveOneWeightAtACentre) {
+TEST(VolumeFilter, InterpolatingOnesHaveOneWeightAtACenter) {
   for (const Filter filter : {Filter::cubic, Filter::lanczos}) {
     const int lower = tap_count(filter) / 2 - 1;
     float weights[max_taps];
@@ -167,7 +167,7 @@ TEST(VolumeFilter, KeepsAConstantBitForBit) {
   }
 }
 
-TEST(VolumeFilter, GivesTheSampleItselfAtACentre) {
+TEST(VolumeFilter, GivesTheSampleItselfAtACenter) {
   const auto samples = samples_of<float>(
       {5, 4, 3}, [](double i, double j, double k) { return std::sin(7 * i + 3 * j * j - k); });
   for (const Filter filter : wide_filters) {
@@ -220,7 +220,7 @@ TEST(VolumeFilter, IsTheReferenceUpToTheRimOfVolumesOfEverySize) {
   }
 }
 
-TEST(VolumeFilter, MirrorsAtTheOutermostCentres) {
+TEST(VolumeFilter, MirrorsAtTheOutermostCenters) {
   const int expected[] = {2, 3, 2, 1, 0, 1, 2, 3, 2, 1};
   for (int i = -4; i < 6; ++i) EXPECT_EQ(mirrored(i, 3), expected[i + 4]);
   for (int i = -3; i < 5; ++i) EXPECT_EQ(mirrored(i, 0), 0);

@@ -77,7 +77,7 @@ TEST(VolumeLabel, IsTheLargestOfInterpolatedIndicators) {
   EXPECT_LT(close, 5);
 }
 
-/// Beyond the outermost centres there is one neighbour.
+/// Beyond the outermost centers there is one neighbor.
 TEST(VolumeLabel, ClampsToTheRim) {
   const std::uint8_t row[] = {3, 1, 2};
   const SourceView<std::uint8_t> source = {row, {3, 1, 1}, 1};

@@ -123,7 +123,7 @@ TYPED_TEST(VolumeUniform, NeverFillsWhatInterpolationMayChange) {
   }
 }
 
-/// Blocks that no tetrahedron samples are not read, except for the neighbours of sampled ones.
+/// Blocks that no tetrahedron samples are not read, except for the neighbors of sampled ones.
 TYPED_TEST(VolumeUniform, LooksOnlyWhereTheMeshIs) {
   const Samples<float> samples(64, 8, 8, 1.5f);
   EXPECT_EQ(this->run(samples, box_nodes(2, 7)).reach, (Bytes{2, 1, 0, 0, 0, 0, 0, 0}));

@@ -24,10 +24,10 @@ std::vector<scenes::Scene> shrunk_scenes() {
     scenes.back().deformed = scenes::waved(scenes.back().deformed, share, 71);
   }
   scenes.back().output_grid.dims = {9, 9, 9};
-  const Point3 centre = centre_of(grid);
+  const Point3 center = center_of(grid);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     scenes.back().output_grid.spacing[axis] = 0.1;
-    scenes.back().output_grid.origin[axis] = centre[axis];
+    scenes.back().output_grid.origin[axis] = center[axis];
   }
   scenes.front().output_grid.spacing = {1.1, 1.3, 3.9};  // voxels outside average, too
   return scenes;

@@ -78,7 +78,7 @@ TEST_P(WarpFields, AreThoseOfAnAffineMotionAndZeroOutside) {
   const Mesh mesh = covering_mesh(grid);
   Matrix stretch;
   stretch << 1.2, 0.3, 0, -0.1, 0.9, 0.2, 0, 0.05, -1.1;
-  const Vector centre = vector_of(grid.world_of({5, 6, 7}));
+  const Vector center = vector_of(grid.world_of({5, 6, 7}));
   const Vector whole = vector_of(grid.world_of({2, -1, 3})) - vector_of(grid.origin);
   struct Motion {
     Matrix gradient;
@@ -90,7 +90,7 @@ TEST_P(WarpFields, AreThoseOfAnAffineMotionAndZeroOutside) {
        {Motion{Matrix::Identity(), Vector::Zero(), exact}, Motion{Matrix::Identity(), whole, 2e-6},
         Motion{stretch, Vector{0.3, 1, -2}, 1e-5}}) {
     const auto moved_place = [&](const Vector& x) -> Vector {
-      return motion.gradient * (x - centre) + centre + motion.shift;
+      return motion.gradient * (x - center) + center + motion.shift;
     };
     scenes::Scene scene = {"affine", mesh, mesh.rest_positions, grid, grid};
     for (Point3& p : scene.deformed) {
@@ -113,7 +113,7 @@ TEST_P(WarpFields, AreThoseOfAnAffineMotionAndZeroOutside) {
       const bool is_covered = warped.owner[v] >= 0;
       covered += is_covered;
       const double one = is_covered ? 1 : 0;
-      const Vector rest = motion.gradient.inverse() * (x - centre - motion.shift) + centre;
+      const Vector rest = motion.gradient.inverse() * (x - center - motion.shift) + center;
       ASSERT_LE(error_at(fields.displacement(), v, one * (rest - x)), one * motion.tolerance);
       ASSERT_LE(error_at(fields.gradient(), v, one * by_rows.reshaped()), one * motion.tolerance);
       ASSERT_LE(error_at(fields.strain(), v, one * strain), one * motion.tolerance);

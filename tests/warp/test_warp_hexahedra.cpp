@@ -119,7 +119,7 @@ std::int32_t parent_of(std::int32_t tet, int parts) {
 
 /// Within a hexahedron the difference falls with the square of the edge of the tetrahedra (found:
 /// 0.50, 0.13, 0.034 voxel). Between a curved face and its two triangles a voxel uses the map of
-/// the neighbouring hexahedron, slightly beyond that (found: 0.09).
+/// the neighboring hexahedron, slightly beyond that (found: 0.09).
 TEST_P(WarpHexahedra, AreTheLimitOfEverFinerTetrahedra) {
   std::array<double, 3> error{};
   double beside_faces = 0;

@@ -45,8 +45,8 @@ std::vector<scenes::Scene> whole_scenes() {
   Grid output = scenes::unit_grid(26, 22, 24);
   output.spacing = {0.9, 1.1, 1.3};
   output.direction = {0, -1, 0, 1, 0, 0, 0, 0, 1};
-  const Point3 centre = centre_of(source);
-  output.origin = {centre[0] + 12, centre[1] - 11, centre[2] - 14};
+  const Point3 center = center_of(source);
+  output.origin = {center[0] + 12, center[1] - 11, center[2] - 14};
   std::vector<scenes::Scene> scenes;
   for (const Matrix& linear :
        {Matrix(turn(0.4, {1, 2, -1}) * 0.35), Matrix(turn(1.1, {1, 0, 1}) * 1.2),
@@ -54,7 +54,7 @@ std::vector<scenes::Scene> whole_scenes() {
     scenes.push_back(affine_scene(source, output, linear));
     scenes.back().deformed = scenes::waved(scenes.back().deformed, 1.0, 91);
   }
-  for (Point3& p : scenes[1].deformed) p[0] = centre[0] + std::abs(p[0] - centre[0]);
+  for (Point3& p : scenes[1].deformed) p[0] = center[0] + std::abs(p[0] - center[0]);
   return scenes;
 }
 

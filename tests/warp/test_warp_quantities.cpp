@@ -45,7 +45,7 @@ void for_covered(const std::vector<double>& value,
   Grid mirrored = scenes::unit_grid(20, 9, 11);
   mirrored.direction = {0, -1, 0, 1, 0, 0, 0, 0, -1};
   mirrored.spacing = {0.8, 1.1, 1.7};
-  const Point3 at = centre_of(source);
+  const Point3 at = center_of(source);
   mirrored.origin = {at[0] + 5, at[1] - 8, at[2] + 9};
   for (const Grid& output : {source, mirrored}) {
     const scenes::Scene scene = affine_scene(source, output, forward);

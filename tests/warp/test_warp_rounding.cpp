@@ -67,8 +67,8 @@ TEST(StochasticRounding, IsUnbiasedAndKeepsWholeNumbers) {
   }
 }
 
-/// Errors of neighbours are independent: their products sum to zero within five deviations.
-TEST(StochasticRounding, DoesNotRelateNeighbours) {
+/// Errors of neighbors are independent: their products sum to zero within five deviations.
+TEST(StochasticRounding, DoesNotRelateNeighbors) {
   constexpr int count = 200000;
   for (const int apart : {1, 2, 3, 64, 4096}) {
     double sum = 0;

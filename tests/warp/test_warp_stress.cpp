@@ -20,7 +20,7 @@ enum class Thin { rest, deformed, both };
 constexpr double middle = 16.25;  ///< of the layer, y
 
 /// A box with a layer `thickness` thin, shortened and sheared so that the layer's middle runs
-/// through voxel centres. All but the thickness is whole quanta.
+/// through voxel centers. All but the thickness is whole quanta.
 Solid sliver_solid(double thickness, Thin thin) {
   const Grid grid = scenes::unit_grid(40, 32, 32);
   Solid solid;
@@ -62,7 +62,7 @@ TEST_P(WarpStress, SliversKeepTheLawsHoweverThin) {
   }
 }
 
-/// The slivers are met: 525 voxels have their centre in the thin layer, down to the quantum. Below
+/// The slivers are met: 525 voxels have their center in the thin layer, down to the quantum. Below
 /// it the layer is flat and the voxels go to its neighbors.
 TEST_P(WarpStress, SliversOwnTheVoxelsInThemUntilTheyAreFlat) {
   for (int decade = 1; decade <= 12; ++decade) {
@@ -97,7 +97,7 @@ TEST_P(WarpStress, InvertedTetrahedraMapLikeOthers) {
 }
 
 /// Every second layer of cells squashed to nothing: flat tetrahedra are counted, own nothing, and
-/// leave no hole. The mesh stays aligned, so that its faces pass through voxel centres, all ties.
+/// leave no hole. The mesh stays aligned, so that its faces pass through voxel centers, all ties.
 TEST_P(WarpStress, FlatTetrahedraOwnNothingAndLeaveNoHole) {
   const Grid grid = scenes::unit_grid(40, 40, 40);
   Solid solid = turned_solid(grid, grid, {6, 4, 4});

@@ -88,7 +88,7 @@ TEST_P(WarpStressSize, AMillionVoxelsIntoTheSourceKeepTheLaws) {
   found("evaluation", expect_laws(solid, PixelType::float32).evaluation);
 }
 
-/// One tetrahedron with voxel centres on its faces, edges and nodes; it owns them too.
+/// One tetrahedron with voxel centers on its faces, edges and nodes; it owns them too.
 TEST_P(WarpStressSize, OneTetrahedronOwnsItsClosedShape) {
   const Grid grid = scenes::unit_grid(24, 24, 24);
   for (const double size : {0.0625, 1.0, 20.0}) {

@@ -66,7 +66,7 @@ Grid grid_of(const Grid& source, const IndexBox& box) {
 /// of its voxels stays. What check_grid() refuses is left for it.
 Grid with_box_kept(const GridChoice& choice, const Grid& base) {
   Grid grid = base;
-  Point3 first{};  // centre of the first voxel, in voxels of the base
+  Point3 first{};  // center of the first voxel, in voxels of the base
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = static_cast<double>(base.dims[axis]) * base.spacing[axis];
     if (choice.spacing) {
@@ -80,9 +80,9 @@ Grid with_box_kept(const GridChoice& choice, const Grid& base) {
       if (grid.dims[axis] < 1) continue;
       grid.spacing[axis] = length / static_cast<double>(grid.dims[axis]);
     }
-    const double between_centres =
+    const double between_centers =
         static_cast<double>(grid.dims[axis] - 1) * grid.spacing[axis] / base.spacing[axis];
-    first[axis] = 0.5 * (static_cast<double>(base.dims[axis] - 1) - between_centres);
+    first[axis] = 0.5 * (static_cast<double>(base.dims[axis] - 1) - between_centers);
   }
   if (!choice.direction) grid.origin = base.world_of(first);
   return grid;

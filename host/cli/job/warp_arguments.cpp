@@ -110,15 +110,15 @@ void declare_grid_options(CLI::App& app, GridChoice& grid) {
       ->type_name("same|bounds|FILE");
   add_numbers(app, "--dims", grid.dims, "NI,NJ,NK",
               "voxels of the output grid; alone it keeps the base's box [--spacing]");
-  add_numbers(app, "--origin", grid.origin, "X,Y,Z", "centre of its first voxel");
+  add_numbers(app, "--origin", grid.origin, "X,Y,Z", "center of its first voxel");
   add_numbers(app, "--spacing", grid.spacing, "X,Y,Z",
-              "distance of its voxel centres; alone it keeps the base's box [--dims]");
+              "distance of its voxel centers; alone it keeps the base's box [--dims]");
   add_numbers(app, "--direction", grid.direction, "D1,...,D9", "its axes as columns, row by row");
 }
 
 void declare_sampling_options(CLI::App& app, WarpOptions& warp) {
   add_choice(app, "--filter", warp.filter, choices_of<Filter>(),
-             "interpolation between voxel centres [linear]");
+             "interpolation between voxel centers [linear]");
   add_choice(app, "--overshoot", warp.overshoot, choices_of<Overshoot>(),
              "interpolated values beyond the source's range: cubic, bspline, lanczos [keep]");
   app.add_flag("--antialias", warp.antialias, "average samples where tetrahedra shrink the source");

@@ -99,8 +99,8 @@ std::optional<Surface> surface_of(const Obstacle& obstacle, double time) {
   Surface surface;
   Point3 origin{0, 0, 0};
   if (const auto* sphere = std::get_if<SphereObstacle>(&obstacle.geometry)) {
-    surface = capsule_surface(sphere->centre, sphere->centre, sphere->radius);
-    origin = sphere->centre;
+    surface = capsule_surface(sphere->center, sphere->center, sphere->radius);
+    origin = sphere->center;
   } else if (const auto* capsule = std::get_if<CapsuleObstacle>(&obstacle.geometry)) {
     surface = capsule_surface(capsule->from, capsule->to, capsule->radius);
   } else if (const auto* mesh = std::get_if<Surface>(&obstacle.geometry)) {

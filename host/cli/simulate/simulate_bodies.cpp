@@ -98,7 +98,7 @@ std::vector<Point3> BodyFiles::velocities_of(const File& file) const {
   std::vector<Point3> velocities = simulator_.surface_positions(file.body);
   for (Point3& point : velocities) {
     Point3 arm{};
-    for (std::size_t axis = 0; axis < 3; ++axis) arm[axis] = point[axis] - body.centre[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) arm[axis] = point[axis] - body.center[axis];
     const Point3 turning = cross(body.angular_velocity, arm);
     for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = body.velocity[axis] + turning[axis];
   }

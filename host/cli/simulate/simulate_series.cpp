@@ -98,7 +98,7 @@ void StepSeries::add_seconds() {
 
 void StepSeries::add_body(const Body& body, std::size_t index) {
   static constexpr std::array<std::pair<const char*, Point3 BodyRecord::*>, 8> vectors{
-      {{"centre", &BodyRecord::centre},
+      {{"centre", &BodyRecord::center},
        {"velocity", &BodyRecord::velocity},
        {"angular_momentum", &BodyRecord::angular_momentum},
        {"contact_force", &BodyRecord::contact_force},

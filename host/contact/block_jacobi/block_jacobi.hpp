@@ -89,8 +89,8 @@ class BlockJacobi {
     const ContactNumbers<T>& numbers = task.numbers_in<T>();
     body_relax(
         exec_, task.island.block_begin, task.island.block_end,
-        DiagonalBody<T>{numbers.system.dof_start, numbers.diagonal_value, numbers.system.values,
-                        task.island.dof_begin, view_of(memory_.weights)});
+        DiagonalOp<T>{numbers.system.dof_start, numbers.diagonal_value, numbers.system.values,
+                      task.island.dof_begin, view_of(memory_.weights)});
   }
 
   /// Iterates until the estimated residual is within the tolerance, the iteration diverges, or
@@ -175,7 +175,7 @@ class BlockJacobi {
   }
 
   double norm_of_velocity() {
-    const SizeBody<T> body = {view_of(std::as_const(memory_.weights)), pipeline_.body_velocity()};
+    const SizeOp<T> body = {view_of(std::as_const(memory_.weights)), pipeline_.body_velocity()};
     return std::sqrt(
         exec_.template sum<PlainSums<1>>("contact/mix", 0, body.x.size, body).value[0]);
   }

@@ -102,20 +102,20 @@ class CoupledSystem {
     PlainSums<1>* const curvature = view_of(memory_.curvatures).data;
     double* const factor = view_of(memory_.factors).data;
     double* const shrink = view_of(memory_.shrinks).data;
-    sum_to(GradientStartBody{inverse_, defect.data, image, direction}, size);
+    sum_to(GradientStartOp{inverse_, defect.data, image, direction}, size);
     LinearProgress progress;
     error_.start_solve();
     moved_square_ = 0;
     std::int64_t next_check = first_check;
     for (std::int64_t k = 0; k < max_products; ++k) {
       if (Exec::reads_are_free && !(size[k].value[0] > 0)) break;
-      sum_to(GradientProductBody{matrix_, direction, product}, curvature + k);
-      exec_.once("contact/relax", GradientQuotientBody{size + k, curvature + k, factor + k});
-      sum_to(GradientStepBody{inverse_, factor + k, direction, product, x.data, defect.data, image},
+      sum_to(GradientProductOp{matrix_, direction, product}, curvature + k);
+      exec_.once("contact/relax", GradientQuotientOp{size + k, curvature + k, factor + k});
+      sum_to(GradientStepOp{inverse_, factor + k, direction, product, x.data, defect.data, image},
              size + k + 1);
-      exec_.once("contact/relax", GradientQuotientBody{size + k + 1, size + k, shrink + k});
+      exec_.once("contact/relax", GradientQuotientOp{size + k + 1, size + k, shrink + k});
       body_relax(exec_, island_.block_begin, island_.block_end,
-                 GradientTurnBody{inverse_.dof_start, shrink + k, image, direction});
+                 GradientTurnOp{inverse_.dof_start, shrink + k, image, direction});
       const bool is_over = Exec::reads_are_free && !(size[k + 1].value[0] > 0);
       if (!is_over && k + 1 < std::min(next_check, max_products)) continue;
       const double left = read_steps(k + 1);
@@ -131,9 +131,9 @@ class CoupledSystem {
  private:
   static constexpr std::int64_t max_products = 1000;
 
-  template <class Body>
-  void sum_to(const Body& body, PlainSums<1>* out) {
-    exec_.sum_to("contact/relax", island_.block_begin, island_.block_end, body, out);
+  template <class Op>
+  void sum_to(const Op& op, PlainSums<1>* out) {
+    exec_.sum_to("contact/relax", island_.block_begin, island_.block_end, op, out);
   }
 
   /// Reads the steps since the last call into `error_` and `moved_square_`.

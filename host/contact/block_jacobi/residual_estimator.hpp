@@ -33,7 +33,7 @@ struct EstimatorMemory {
 /// (A v = b + J^T r, solved by conjugate gradients), and keeps the best pair.
 ///
 /// eta weighs each contact by its own block of J A^-1 J^T, which only a factorization yields, so
-/// eta is bounded; see ResidualBoundBody. The FCLIB error has no weights; its accuracy is that of
+/// eta is bounded; see ResidualBoundOp. The FCLIB error has no weights; its accuracy is that of
 /// the velocities.
 template <class Exec>
 class ResidualEstimator {
@@ -59,8 +59,8 @@ class ResidualEstimator {
     }
     exec.make_zeros(memory.constants, numbers_.constants.size);
     exec.for_each("contact/setup", numbers_.constants.size,
-                  LowerBlocksBody{numbers_.bodies.pairs.pair_start, numbers_.constants,
-                                  options_.expert.relaxation, view_of(memory.constants)});
+                  LowerBlocksOp{numbers_.bodies.pairs.pair_start, numbers_.constants,
+                                options_.expert.relaxation, view_of(memory.constants)});
   }
 
   /// Solves for the velocities without impulses, which set the scale of the residual. If they
@@ -71,7 +71,7 @@ class ResidualEstimator {
     if (is_at_rest) {
       // A zero load gives no estimate of the eigenvalues of A; unit impulses on all contacts do.
       exec_.for_each("contact/setup", island_.contact_count(),
-                     FromIndex<UnitPushBody>{{view_of(memory_.impulse)}, island_.slot_begin});
+                     FromIndex<UnitPushOp>{{view_of(memory_.impulse)}, island_.slot_begin});
       find_defect();
     }
     const LinearProgress progress =
@@ -172,8 +172,8 @@ class ResidualEstimator {
   double imbalance() const {
     const PlainSums<3> sums = exec_.template sum<PlainSums<3>>(
         "contact/residual", island_.block_begin, island_.block_end,
-        BalanceBody{numbers_.block_contacts, numbers_.system.dof_start, numbers_.bodies.jacobian,
-                    numbers_.load, view_of(memory_.impulse), view_of(memory_.defect)});
+        BalanceOp{numbers_.block_contacts, numbers_.system.dof_start, numbers_.bodies.jacobian,
+                  numbers_.load, view_of(memory_.impulse), view_of(memory_.defect)});
     const double scale = std::max(sums.value[1], sums.value[2]);
     return std::sqrt(sums.value[0] / std::max(scale, std::numeric_limits<double>::min()));
   }
@@ -186,11 +186,11 @@ class ResidualEstimator {
     const View<const double> free = view_of(std::as_const(memory_.free_velocity));
     outcome.free =
         exec_.template sum<ContactSums>("contact/residual", island_.slot_begin, island_.slot_end,
-                                        FreeResidualBoundBody{natural(free)});
+                                        FreeResidualBoundOp{natural(free)});
     outcome.free_square =
         exec_
             .template sum<PlainSums<1>>("contact/residual", 3 * island_.slot_begin,
-                                        3 * island_.slot_end, SquareBody<double>{free})
+                                        3 * island_.slot_end, SquareOp<double>{free})
             .value[0];
     const double scale =
         options_.measure == ContactMeasure::eta ? outcome.free.eta : outcome.free_square;
@@ -202,9 +202,9 @@ class ResidualEstimator {
   void find_defect() {
     body_relax(
         exec_, island_.block_begin, island_.block_end,
-        BodyDefectBody<double>{numbers_.system, numbers_.block_contacts, numbers_.bodies.jacobian,
-                               numbers_.load, view_of(memory_.impulse),
-                               view_of(memory_.body_velocity), view_of(memory_.defect)});
+        BodyDefectOp<double>{numbers_.system, numbers_.block_contacts, numbers_.bodies.jacobian,
+                             numbers_.load, view_of(memory_.impulse),
+                             view_of(memory_.body_velocity), view_of(memory_.defect)});
   }
 
   /// Continues the solve of A v = b + J^T r; see CoupledSystem::solve().
@@ -217,7 +217,7 @@ class ResidualEstimator {
 
   /// u = J v + w.
   void find_velocity(Vector& velocity) {
-    using Body = ContactVelocityBody<BodiesView<double>, double>;
+    using Body = ContactVelocityOp<BodiesView<double>, double>;
     const Body body{numbers_.bodies, view_of(memory_.body_velocity).data, view_of(velocity)};
     exec_.for_each("contact/residual", island_.contact_count(),
                    FromIndex<Body>{body, island_.slot_begin});
@@ -229,8 +229,8 @@ class ResidualEstimator {
     return std::sqrt(
         exec_
             .template sum<PlainSums<1>>("contact/residual", island_.slot_begin, island_.slot_end,
-                                        DistanceBody{view_of(memory_.constants),
-                                                     view_of(memory_.velocity).data, velocity.data})
+                                        DistanceOp{view_of(memory_.constants),
+                                                   view_of(memory_.velocity).data, velocity.data})
             .value[0]);
   }
 
@@ -239,16 +239,16 @@ class ResidualEstimator {
     find_velocity(memory_.velocity);
     ContactSums sums = exec_.template sum<ContactSums>(
         "contact/residual", island_.slot_begin, island_.slot_end,
-        ResidualBoundBody{natural(view_of(std::as_const(memory_.velocity))),
-                          view_of(std::as_const(memory_.consistent_velocity))});
+        ResidualBoundOp{natural(view_of(std::as_const(memory_.velocity))),
+                        view_of(std::as_const(memory_.consistent_velocity))});
     // The share of the diagonal blocks of A; the responses have the relaxation as a factor.
     sums.magnitude =
         exec_
             .template sum<PlainSums<1>>(
                 "contact/residual", island_.block_begin, island_.block_end,
-                BodyMagnitudeBody<double>{numbers_.block_contacts, numbers_.system.dof_start,
-                                          numbers_.bodies.jacobian, numbers_.bodies.response,
-                                          view_of(std::as_const(memory_.impulse))})
+                BodyMagnitudeOp<double>{numbers_.block_contacts, numbers_.system.dof_start,
+                                        numbers_.bodies.jacobian, numbers_.bodies.response,
+                                        view_of(std::as_const(memory_.impulse))})
             .value[0] /
         options_.expert.relaxation;
     return sums;
@@ -259,7 +259,7 @@ class ResidualEstimator {
   }
 
   /// The natural map of the current impulses.
-  ContactResidualBody<double> natural(View<const double> velocity) const {
+  ContactResidualOp<double> natural(View<const double> velocity) const {
     return {view_of(memory_.constants), switches_of(options_), view_of(memory_.impulse), velocity,
             view_of(memory_.free_velocity)};
   }
@@ -281,7 +281,7 @@ class ResidualEstimator {
   bool is_zero(View<const double> dofs) const {
     return exec_
                .template sum<PlainSums<1>>("contact/setup", island_.dof_begin, island_.dof_end,
-                                           NonzeroBody<double>{dofs})
+                                           NonzeroOp<double>{dofs})
                .value[0] == 0;
   }
 

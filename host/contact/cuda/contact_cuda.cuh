@@ -82,7 +82,7 @@ class CudaContactDevice final : public ContactDevice {
       if (problem.guess.size == 0) return;
       exec_.for_each(
           "contact/setup", indices_.slots(),
-          GatherBody<3>{indices_.contact_of_slot, problem.guess, view_of(runs_.impulse())});
+          GatherOp<3>{indices_.contact_of_slot, problem.guess, view_of(runs_.impulse())});
     };
     end.updates_skipped = runs_.solve(options, start, budget, outcomes);
     end.has_run = true;
@@ -134,9 +134,9 @@ class CudaContactDevice final : public ContactDevice {
     return labels();
   }
 
-  void evolve(const ContactAdhesionBody& body) override {
+  void evolve(const ContactAdhesionOp& body) override {
     const DeviceScope scope(exec_.number());
-    ContactAdhesionBody on_device = body;
+    ContactAdhesionOp on_device = body;
     on_device.in = adhesion_on_device(exec_, body.in, input_in_memory_);
     next_intensity_.resize(body.next_intensity.size);
     next_gap_.resize(body.next_gap.size);
@@ -150,7 +150,7 @@ class CudaContactDevice final : public ContactDevice {
     exec_.get(view_of(std::as_const(debonded_)), body.debonded.data);
   }
 
-  void evolve_resident(const ContactAdhesionBody& body, void* stream) override {
+  void evolve_resident(const ContactAdhesionOp& body, void* stream) override {
     const DeviceScope scope(exec_.number());
     const CallersStream callers(exec_, stream);
     contact_adhesion(exec_, body);

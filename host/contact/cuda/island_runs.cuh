@@ -23,7 +23,7 @@
 namespace tetwarp {
 
 /// One index = one contact: how many of its visits sweeps have skipped.
-struct SkippedVisitsBody {
+struct SkippedVisitsOp {
   View<const std::int32_t> visits;
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t slot) const {
@@ -187,7 +187,7 @@ class IslandRuns {
     }
     const View<const std::int32_t> visits = view_of(std::as_const(problem.state.skipped_visits));
     const auto skipped =
-        exec_.sum<PlainSums<1>>("contact/sweep", 0, visits.size, SkippedVisitsBody{visits});
+        exec_.sum<PlainSums<1>>("contact/sweep", 0, visits.size, SkippedVisitsOp{visits});
     return static_cast<std::int64_t>(skipped.value[0]);
   }
 

@@ -45,7 +45,7 @@ class ResidentArrays {
     if (in.load.size == 0 || speed == INFINITY) return in.given_velocity;
     recovered_.resize(in.given_velocity.size);
     exec.for_each("contact/setup", in.friction.size,
-                  RecoveryBody{in.given_velocity, speed, view_of(recovered_)});
+                  RecoveryOp{in.given_velocity, speed, view_of(recovered_)});
     return view_of(std::as_const(recovered_));
   }
 
@@ -66,7 +66,7 @@ class ResidentArrays {
     const View<BadCount> checks = view_of(checks_);
     exec.make_zeros(checks_, check_count);
 
-    RangeCheckBody range;
+    RangeCheckOp range;
     for (const View<const double> any :
          {in.matrix, in.jacobian, in.load, in.given_velocity, in.gap, problem.guess}) {
       range.add(any, -most, most);
@@ -78,17 +78,17 @@ class ResidentArrays {
     range.add(in.intensity, 0, 1);
     exec.sum_to(label, 0, range.total, range, &checks[0]);
 
-    const ContactScalesBody scales{in, rows_, indices.is_local};
+    const ContactScalesOp scales{in, rows_, indices.is_local};
     exec.sum_to(label, 0, contacts, scales, &view_of(largest_)[0]);
     const LargestOf<2>* const largest = view_of(largest_).data;
-    exec.sum_to(label, 0, contacts, ContactCheckBody{scales, largest}, &checks[1]);
+    exec.sum_to(label, 0, contacts, ContactCheckOp{scales, largest}, &checks[1]);
     if (indices.is_local) {
-      exec.sum_to(label, 0, 3 * contacts, SemidefiniteCheckBody{scales, largest}, &checks[2]);
+      exec.sum_to(label, 0, 3 * contacts, SemidefiniteCheckOp{scales, largest}, &checks[2]);
     } else {
-      exec.sum_to(label, 0, is_zero_.size, ZeroPatternBody{in.matrix, is_zero_}, &checks[2]);
+      exec.sum_to(label, 0, is_zero_.size, ZeroPatternOp{in.matrix, is_zero_}, &checks[2]);
       exec.sum_to(
           label, 0, indices.blocks(),
-          BlockCheckBody{indices.pairs.dof_start, indices.diagonal_value, numbers.system.values},
+          BlockCheckOp{indices.pairs.dof_start, indices.diagonal_value, numbers.system.values},
           &checks[3]);
     }
     const auto bad = exec.sum<BadCount>(label, 0, check_count,
@@ -117,19 +117,18 @@ class ResidentArrays {
     const View<double> r = target(problem.impulse, impulse.size, impulse_);
     const View<double> u = target(problem.velocity, impulse.size, velocity_);
     const View<double> v = target(problem.body_velocity, body_velocity.size, body_velocity_);
-    exec.for_each(label, indices.slots(), ScatterItemsBody<3>{indices.contact_of_slot, impulse, r});
-    exec.for_each(label, indices.dofs(),
-                  ScatterItemsBody<1>{indices.dof_of_place, body_velocity, v});
+    exec.for_each(label, indices.slots(), ScatterItemsOp<3>{indices.contact_of_slot, impulse, r});
+    exec.for_each(label, indices.dofs(), ScatterItemsOp<1>{indices.dof_of_place, body_velocity, v});
     const View<const double> x = indices.is_local ? View<const double>(r) : View<const double>(v);
     exec.for_each(
         label, r.size,
-        RowResultBody{rows_, indices.is_local ? in.matrix : in.jacobian, x, in.given_velocity, u});
+        RowResultOp{rows_, indices.is_local ? in.matrix : in.jacobian, x, in.given_velocity, u});
     sums_.resize(2);
     const View<ResultSums> sums = view_of(sums_);
-    exec.sum_to(label, 0, r.size, ContactResultBody{r, u}, &sums[0]);
+    exec.sum_to(label, 0, r.size, ContactResultOp{r, u}, &sums[0]);
     exec.sum_to(label, 0, indices.blocks(),
-                BalanceSumsBody{numbers.system, numbers.block_contacts, numbers.bodies.jacobian,
-                                numbers.load, impulse, body_velocity},
+                BalanceSumsOp{numbers.system, numbers.block_contacts, numbers.bodies.jacobian,
+                              numbers.load, impulse, body_velocity},
                 &sums[1]);
     return exec.sum<ResultSums>(label, 0, 2, ReadySums<ResultSums>{View<const ResultSums>(sums)});
   }

@@ -63,7 +63,7 @@ std::vector<MeasuredContact> measured_contacts(const ContactProblem& problem) {
   std::vector<std::int32_t> index(problem.friction.size());
   std::iota(index.begin(), index.end(), 0);
   std::vector<ContactConstants<double>> constants(index.size());
-  const ContactConstantsBody set_constants = {
+  const ContactConstantsOp set_constants = {
       input_of(problem), view_of(std::as_const(index)), {.skips_rows = false}, view_of(constants)};
   std::vector<MeasuredContact> contacts(index.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {

@@ -16,12 +16,12 @@ namespace tetwarp {
 namespace {
 using Eigen::Vector3d;
 
-/// body(i) for i in [0, count).
-template <class Body>
-void for_contacts(int threads, std::size_t count, const Body& body) {
+/// op(i) for i in [0, count).
+template <class Op>
+void for_contacts(int threads, std::size_t count, const Op& op) {
   const auto size = static_cast<std::int64_t>(count);
   parallel_for(threads_for(threads, size), size,
-               [&](std::int64_t i) { body(static_cast<std::size_t>(i)); });
+               [&](std::int64_t i) { op(static_cast<std::size_t>(i)); });
 }
 
 /// What a contact of a step continues: at least one of both is not null.

@@ -137,7 +137,7 @@ BodiesState ReferenceBodies::state() const {
   result.node_velocities = points_of(state.velocity, 0, system.node_count());
   for (std::size_t r = 0; r < system.rigids.size(); ++r) {
     const auto block = static_cast<std::size_t>(system.linear_block(static_cast<int>(r)));
-    result.centres.push_back(point_of(state.frame[r].position));
+    result.centers.push_back(point_of(state.frame[r].position));
     result.rotations.push_back(quaternion_of(state.frame[r].rotation));
     result.velocities.push_back(point_of(state.velocity[block]));
     result.angular_momenta.push_back(point_of(state.angular_momentum[r]));
@@ -154,7 +154,7 @@ void ReferenceBodies::set_state(const BodiesState& from) {
   }
   for (std::size_t r = 0; r < system.rigids.size(); ++r) {
     const auto block = static_cast<std::size_t>(system.linear_block(static_cast<int>(r)));
-    state.frame[r] = {vector_of(from.centres.at(r)), rotation_of(from.rotations.at(r))};
+    state.frame[r] = {vector_of(from.centers.at(r)), rotation_of(from.rotations.at(r))};
     state.velocity[block] = vector_of(from.velocities.at(r));
     state.angular_momentum[r] = vector_of(from.angular_momenta.at(r));
     if (system.rigids[r].mass == 0) continue;
@@ -213,11 +213,11 @@ StepRecord ReferenceBodies::record() const {
     const BodyMotion motion = motion_of(system, state, b);
     const Vector3d momentum = motion.mass * motion.velocity;
     BodyRecord& of = record.bodies[b];
-    of.centre = point_of(motion.centre);
+    of.center = point_of(motion.center);
     of.velocity = point_of(motion.velocity);
     of.angular_momentum = point_of(motion.angular_momentum);
     add_to(record.momentum, momentum);
-    add_to(record.angular_momentum, motion.centre.cross(momentum) + motion.angular_momentum);
+    add_to(record.angular_momentum, motion.center.cross(momentum) + motion.angular_momentum);
     if (system.places[b].rigid < 0) continue;
     const int block = system.linear_block(system.places[b].rigid) + 1;
     of.rotation =

@@ -15,10 +15,10 @@ namespace tetwarp::reference {
 struct BodiesState {
   std::vector<Point3> node_positions;  ///< all bodies, [node][x y z]
   std::vector<Point3> node_velocities;
-  std::vector<Point3> centres;                   ///< of rigid frames
+  std::vector<Point3> centers;                   ///< of rigid frames
   std::vector<std::array<double, 4>> rotations;  ///< geometry to world, w x y z
-  std::vector<Point3> velocities;                ///< of the centres
-  std::vector<Point3> angular_momenta;           ///< about the centres
+  std::vector<Point3> velocities;                ///< of the centers
+  std::vector<Point3> angular_momenta;           ///< about the centers
 };
 
 class ReferenceBodies {
@@ -48,10 +48,10 @@ class ReferenceBodies {
   StepRecord record() const;
   /// sum_b m_ab of the nodes [kg]; of a rigid body one entry.
   std::vector<double> masses(std::size_t body) const;
-  /// Inertia about the centre of mass, world axes, rows [kg m^2], of the mass where it is now.
+  /// Inertia about the center of mass, world axes, rows [kg m^2], of the mass where it is now.
   std::array<double, 9> inertia(std::size_t body) const;
 
-  /// As Simulator::move_handle() and its neighbours.
+  /// As Simulator::move_handle() and its neighbors.
   void move_handle(const std::string& name, const Point3& displacement);
   void release_handle(const std::string& name);
   void move_script(const std::string& name, const Point3& displacement, const Point3& axis_angle);

@@ -16,23 +16,23 @@ BodyMotion motion_of_nodes(const System& system, const State& state, const BodyP
   for (int a = place.first_node; a < end; ++a) {
     for (int b = place.first_node; b < end; ++b) {
       motion.mass += system.mass(a, b);
-      motion.centre += system.mass(a, b) * at(state.node, b);
+      motion.center += system.mass(a, b) * at(state.node, b);
       motion.velocity += system.mass(a, b) * at(state.velocity, b);
     }
   }
   if (motion.mass == 0) {  // scripted: means of the nodes
     for (int n = place.first_node; n < end; ++n) {
-      motion.centre += at(state.node, n) / place.node_count;
+      motion.center += at(state.node, n) / place.node_count;
       motion.velocity += at(state.velocity, n) / place.node_count;
     }
     return motion;
   }
-  motion.centre /= motion.mass;
+  motion.center /= motion.mass;
   motion.velocity /= motion.mass;
   for (int a = place.first_node; a < end; ++a) {
-    const Vector3d arm = at(state.node, a) - motion.centre;
+    const Vector3d arm = at(state.node, a) - motion.center;
     for (int b = place.first_node; b < end; ++b) {
-      const Vector3d other = at(state.node, b) - motion.centre;
+      const Vector3d other = at(state.node, b) - motion.center;
       motion.angular_momentum += system.mass(a, b) * arm.cross(at(state.velocity, b));
       motion.inertia +=
           system.mass(a, b) * (arm.dot(other) * Matrix3d::Identity() - other * arm.transpose());

@@ -7,10 +7,10 @@
 
 namespace tetwarp::reference {
 
-/// Mass, centre, velocity and angular momentum about the centre of a body, and its inertia.
+/// Mass, center, velocity and angular momentum about the center of a body, and its inertia.
 struct BodyMotion {
   double mass = 0;
-  Vector3d centre = Vector3d::Zero();
+  Vector3d center = Vector3d::Zero();
   Vector3d velocity = Vector3d::Zero();
   Vector3d angular_momentum = Vector3d::Zero();
   Matrix3d inertia = Matrix3d::Zero();

@@ -21,7 +21,7 @@ void add_square(const std::vector<int>& nodes,
 }
 
 /// A sheet of m x n squares of dx x dy. Each node stands for the rectangle up to halfway to its
-/// neighbours, each edge for the strip up to halfway to the next ones beside it: k = stretch w / L.
+/// neighbors, each edge for the strip up to halfway to the next ones beside it: k = stretch w / L.
 /// A shear by gamma lengthens a diagonal l by gamma dx dy / l, so that two of stiffness
 /// shear l^2 / (2 dx dy) store shear gamma^2/2 per area.
 void add_sheet(const Body& body, const BodyGeometry& geometry, ClothBody& cloth) {

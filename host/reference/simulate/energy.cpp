@@ -64,7 +64,7 @@ SceneEnergy energy_of(const System& system, const State& state, const Prescribed
   const Vector3d gravity = vector_of(system.scene.gravity);
   for (std::size_t b = 0; b < system.places.size(); ++b) {
     const BodyMotion motion = motion_of(system, state, b);
-    energy.gravity -= motion.mass * gravity.dot(motion.centre);
+    energy.gravity -= motion.mass * gravity.dot(motion.center);
   }
   return energy;
 }

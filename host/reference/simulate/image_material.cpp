@@ -199,8 +199,8 @@ std::vector<std::vector<HeldVoxel>> owned_voxels(
           const auto voxel =
               static_cast<std::size_t>(ijk[0] + grid.dims[0] * (ijk[1] + grid.dims[1] * ijk[2]));
           if (is_owned[voxel]) continue;
-          const Lattice3 centre{ijk[0] << 20, ijk[1] << 20, ijk[2] << 20};
-          if (!contains(corners, centre)) continue;
+          const Lattice3 center{ijk[0] << 20, ijk[1] << 20, ijk[2] << 20};
+          if (!contains(corners, center)) continue;
           is_owned[voxel] = true;
           const double value = sample_at(image.volume, ijk);
           if (!(value >= image.threshold)) continue;

@@ -17,9 +17,9 @@ struct HeldVoxel {
 };
 
 /// Voxels of the foreground by the tetrahedron that owns them: the lowest-indexed one whose closed
-/// shape contains the centre. Nodes are rounded to multiples of 2^-20 voxel and the decision is
-/// made in integers of it, so that a centre on a common face has one owner. Products are those at
-/// the centre.
+/// shape contains the center. Nodes are rounded to multiples of 2^-20 voxel and the decision is
+/// made in integers of it, so that a center on a common face has one owner. Products are those at
+/// the center.
 std::vector<std::vector<HeldVoxel>> owned_voxels(
     const ImageGeometry& image,
     const std::vector<Point3>& nodes,

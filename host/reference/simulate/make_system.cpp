@@ -88,23 +88,23 @@ void mark_prescribed(System& system) {
   }
 }
 
-/// v = velocity + angular_velocity x (position - centre of mass).
+/// v = velocity + angular_velocity x (position - center of mass).
 void start_nodes(const System& system, std::size_t b, State& state) {
   const Body& body = system.scene.bodies[b];
   const BodyPlace& place = system.places[b];
   const VectorXd weights = system.mass.rowwise().sum();
-  Vector3d centre = Vector3d::Zero();
+  Vector3d center = Vector3d::Zero();
   double mass = 0;
   for (int n = place.first_node; n < place.first_node + place.node_count; ++n) {
-    centre += weights(n) * state.node[static_cast<std::size_t>(n)];
+    center += weights(n) * state.node[static_cast<std::size_t>(n)];
     mass += weights(n);
   }
-  if (mass > 0) centre /= mass;
+  if (mass > 0) center /= mass;
   for (int n = place.first_node; n < place.first_node + place.node_count; ++n) {
     const auto node = static_cast<std::size_t>(n);
     if (system.is_prescribed[node]) continue;
     state.velocity[node] = vector_of(body.velocity) +
-                           vector_of(body.angular_velocity).cross(state.node[node] - centre);
+                           vector_of(body.angular_velocity).cross(state.node[node] - center);
   }
 }
 
@@ -149,7 +149,7 @@ State start_of(const System& system) {
     if (place.rigid < 0) continue;
     const auto r = static_cast<std::size_t>(place.rigid);
     const RigidBody& rigid = system.rigids[r];
-    state.frame[r] = {pose(rigid.centre), pose.rotation};
+    state.frame[r] = {pose(rigid.center), pose.rotation};
     if (rigid.mass == 0) continue;
     const auto block = static_cast<std::size_t>(system.linear_block(place.rigid));
     state.velocity[block] = vector_of(body.velocity);

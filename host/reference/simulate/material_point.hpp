@@ -14,7 +14,7 @@ struct MaterialPoint {
   std::vector<int> nodes;  ///< of all nodes of the scene; empty: rigid or world
   std::vector<double> weights;
   int rigid = -1;                     ///< index of the frame
-  Vector3d local = Vector3d::Zero();  ///< rigid: from its centre, axes of the geometry; else world
+  Vector3d local = Vector3d::Zero();  ///< rigid: from its center, axes of the geometry; else world
 };
 
 /// A point of a simplex nearest to x: weights of its corners, and the distance.

@@ -47,10 +47,10 @@ NearestMaterial nearest_of_solid(const Surface& surface, const Vector3d& x) {
   return nearest;
 }
 
-Vector3d nearest_of_ball(const Vector3d& centre, double radius, const Vector3d& x) {
-  const double distance = (x - centre).norm();
+Vector3d nearest_of_ball(const Vector3d& center, double radius, const Vector3d& x) {
+  const double distance = (x - center).norm();
   if (distance <= radius) return x;
-  return centre + radius / distance * (x - centre);
+  return center + radius / distance * (x - center);
 }
 
 Vector3d nearest_of_obstacle(const Obstacle& obstacle, const Vector3d& x) {
@@ -60,7 +60,7 @@ Vector3d nearest_of_obstacle(const Obstacle& obstacle, const Vector3d& x) {
     return height <= 0 ? x : x - height * normal;
   }
   if (const auto* sphere = std::get_if<SphereObstacle>(&obstacle.geometry)) {
-    return nearest_of_ball(vector_of(sphere->centre), sphere->radius, x);
+    return nearest_of_ball(vector_of(sphere->center), sphere->radius, x);
   }
   if (const auto* capsule = std::get_if<CapsuleObstacle>(&obstacle.geometry)) {
     MatrixXd ends(3, 2);
@@ -91,12 +91,12 @@ NearestMaterial nearest_of_body(int body,
     for (int& node : nearest.point.nodes) node += place.first_node;
   } else {
     const auto r = static_cast<std::size_t>(place.rigid);
-    const Vector3d centre = system.rigids[r].centre;
+    const Vector3d center = system.rigids[r].center;
     const Placement& frame = start.frame[r];
-    const Vector3d local = frame.rotation.transpose() * (x - frame.position) + centre;
+    const Vector3d local = frame.rotation.transpose() * (x - frame.position) + center;
     nearest = nearest_of_solid(geometry.surface, local);
     nearest.point.rigid = place.rigid;
-    nearest.point.local -= centre;
+    nearest.point.local -= center;
   }
   nearest.point.body = body;
   return nearest;

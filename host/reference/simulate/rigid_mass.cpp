@@ -26,11 +26,11 @@ RigidBody rigid_of(const Body& body, const Surface& surface) {
     first += part / 4 * sum;
     second += part / 20 * (corners * corners.transpose() + sum * sum.transpose());
   }
-  const Vector3d centre = first / volume;
-  const Matrix3d about_centre = second - volume * centre * centre.transpose();
+  const Vector3d center = first / volume;
+  const Matrix3d about_center = second - volume * center * center.transpose();
 
   RigidBody rigid;
-  rigid.centre = origin + centre;
+  rigid.center = origin + center;
   rigid.alpha = body.damping.alpha;
   if (body.rigid.mass) {
     const auto& i = *body.rigid.inertia;
@@ -39,7 +39,7 @@ RigidBody rigid_of(const Body& body, const Surface& surface) {
   } else {
     rigid.mass = body.rigid.density * volume;
     rigid.inertia =
-        body.rigid.density * (about_centre.trace() * Matrix3d::Identity() - about_centre);
+        body.rigid.density * (about_center.trace() * Matrix3d::Identity() - about_center);
   }
   return rigid;
 }

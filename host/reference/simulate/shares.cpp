@@ -35,7 +35,7 @@ MaterialPoint selected_point(const System& system, int body, int index) {
   }
   const Point3& local = system.geometry.bodies[b].surface.points[static_cast<std::size_t>(index)];
   point.rigid = place.rigid;
-  point.local = vector_of(local) - system.rigids[static_cast<std::size_t>(place.rigid)].centre;
+  point.local = vector_of(local) - system.rigids[static_cast<std::size_t>(place.rigid)].center;
   return point;
 }
 

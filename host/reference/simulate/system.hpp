@@ -58,7 +58,7 @@ struct System {
 
 struct State {
   std::vector<Vector3d> node;      ///< positions
-  std::vector<Placement> frame;    ///< centre of mass, and axes of the geometry, of each frame
+  std::vector<Placement> frame;    ///< center of mass, and axes of the geometry, of each frame
   std::vector<Vector3d> velocity;  ///< [blocks]; of angular blocks omega = R I^-1 R^T L
   std::vector<Vector3d> angular_momentum;  ///< [rigids]
 };

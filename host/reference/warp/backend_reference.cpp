@@ -189,15 +189,15 @@ class ReferenceBackend : public WarpBackend {
     for (int c = 0; c < sampler.components(); ++c) voxel[c] = stored<T>(mean(c) * transform.scale);
   }
 
-  /// Calls body(v, index) for every voxel of the region.
-  template <class Body>
-  void for_each_voxel(const Body& body) const {
+  /// Calls op(v, index) for every voxel of the region.
+  template <class Op>
+  void for_each_voxel(const Op& op) const {
     std::size_t v = 0;
     for (std::int64_t k = plan_.region.begin[2]; k < plan_.region.end[2]; ++k) {
       for (std::int64_t j = plan_.region.begin[1]; j < plan_.region.end[1]; ++j) {
         for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
-          body(v, Eigen::Vector3d(static_cast<double>(i), static_cast<double>(j),
-                                  static_cast<double>(k)));
+          op(v, Eigen::Vector3d(static_cast<double>(i), static_cast<double>(j),
+                                static_cast<double>(k)));
         }
       }
     }

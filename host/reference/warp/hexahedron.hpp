@@ -1,6 +1,6 @@
 /// @file hexahedron.hpp
 /// Trilinear maps of the reference and their inverse, by continuation along a straight line from
-/// the centre, in float64. Independent of kernels/.
+/// the center, in float64. Independent of kernels/.
 #pragma once
 #include <Eigen/Dense>
 #include <array>
@@ -42,11 +42,11 @@ class Trilinear {
   /// Local coordinates of x, limited to [-0.25, 1.25].
   Eigen::Vector3d inverse(const Eigen::Vector3d& x) const {
     Eigen::Vector3d u = Eigen::Vector3d::Constant(0.5);
-    const Eigen::Vector3d centre = at(u);
+    const Eigen::Vector3d center = at(u);
     constexpr int stations = 8, corrections = 4;
     for (int station = 1; station <= stations; ++station) {
       const Eigen::Vector3d target =
-          centre + (x - centre) * (static_cast<double>(station) / stations);
+          center + (x - center) * (static_cast<double>(station) / stations);
       for (int n = 0; n < corrections; ++n) u += gradient(u).partialPivLu().solve(target - at(u));
     }
     return u.cwiseMax(-0.25).cwiseMin(1.25);

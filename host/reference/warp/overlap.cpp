@@ -51,12 +51,12 @@ std::vector<Simplex> cut(const std::vector<Simplex>& simplices,
   return kept;
 }
 
-/// The parts of simplices in the box of the voxel at `centre`.
-std::vector<Simplex> in_box(std::vector<Simplex> simplices, const Eigen::Vector3d& centre) {
+/// The parts of simplices in the box of the voxel at `center`.
+std::vector<Simplex> in_box(std::vector<Simplex> simplices, const Eigen::Vector3d& center) {
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d normal = Eigen::Vector3d::Unit(axis);
-    simplices = cut(simplices, normal, centre(axis) - 0.5);
-    simplices = cut(simplices, -normal, -centre(axis) - 0.5);
+    simplices = cut(simplices, normal, center(axis) - 0.5);
+    simplices = cut(simplices, -normal, -center(axis) - 0.5);
   }
   return simplices;
 }
@@ -88,9 +88,9 @@ void for_boxes(const std::vector<Simplex>& simplices, const Dims& dims, const Wo
   for (std::int64_t k = first[2]; k <= last[2]; ++k) {
     for (std::int64_t j = first[1]; j <= last[1]; ++j) {
       for (std::int64_t i = first[0]; i <= last[0]; ++i) {
-        const Eigen::Vector3d centre(static_cast<double>(i), static_cast<double>(j),
+        const Eigen::Vector3d center(static_cast<double>(i), static_cast<double>(j),
                                      static_cast<double>(k));
-        const std::vector<Simplex> pieces = in_box(simplices, centre);
+        const std::vector<Simplex> pieces = in_box(simplices, center);
         if (!pieces.empty()) work((k * dims[1] + j) * dims[0] + i, pieces);
       }
     }

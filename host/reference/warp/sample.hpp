@@ -98,17 +98,17 @@ class Sampler {
 
   /// Writes the values at an index position, rounded to T, or the background outside of the source.
   void store(const Eigen::Vector3d& x, T* out) const {
-    bool is_centre = true;
+    bool is_center = true;
     for (int axis = 0; axis < 3; ++axis) {
       const auto n = static_cast<double>(n_[static_cast<std::size_t>(axis)]);
       if (!(x(axis) >= -0.5 - rim && x(axis) <= n - 0.5 + rim)) {
         std::fill_n(out, components_, background_);
         return;
       }
-      is_centre = is_centre && x(axis) == std::floor(x(axis));
+      is_center = is_center && x(axis) == std::floor(x(axis));
     }
     for (int c = 0; c < components_; ++c) {
-      if (is_centre || filter_ == Filter::nearest) {
+      if (is_center || filter_ == Filter::nearest) {
         out[c] = data_[offset_of({std::floor(x(0) + 0.5), std::floor(x(1) + 0.5),
                                   std::floor(x(2) + 0.5)}) +
                        c];

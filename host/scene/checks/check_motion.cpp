@@ -54,7 +54,7 @@ void check_part(const std::string& place, const BoxSelection& box) {
 }
 
 void check_part(const std::string& place, const SphereSelection& sphere) {
-  check_finite(key_of(place, "sphere"), sphere.centre);
+  check_finite(key_of(place, "sphere"), sphere.center);
   check_positive(key_of(place, "sphere"), sphere.radius, "radius, m");
 }
 

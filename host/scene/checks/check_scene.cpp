@@ -54,7 +54,7 @@ void check_obstacle(const std::string& place, const Obstacle& obstacle) {
     check_direction(key_of(shape, "normal"), plane->normal);
     check_finite(key_of(shape, "point"), plane->point);
   } else if (const auto* sphere = std::get_if<SphereObstacle>(&obstacle.geometry)) {
-    check_finite(key_of(shape, "centre"), sphere->centre);
+    check_finite(key_of(shape, "centre"), sphere->center);
     check_positive(key_of(shape, "radius"), sphere->radius, "m");
   } else if (const auto* capsule = std::get_if<CapsuleObstacle>(&obstacle.geometry)) {
     check_finite(key_of(shape, "from"), capsule->from);

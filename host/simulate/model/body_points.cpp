@@ -43,7 +43,7 @@ ModelPoint selected_point(const Model& model,
     return point;
   }
   point.rigid = at(model.body_rigid, body);
-  const Point3 arm = minus(at(of.surface.points, index), at(model.rigid.centre, point.rigid));
+  const Point3 arm = minus(at(of.surface.points, index), at(model.rigid.center, point.rigid));
   point.local = rotate(conjugate(at(model.rigid.axes, point.rigid)), arm);
   return point;
 }

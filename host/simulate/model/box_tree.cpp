@@ -30,12 +30,12 @@ void BoxTree::build(std::int32_t begin, std::int32_t end) {
   const auto axis =
       static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
   const std::int32_t middle = begin + (end - begin) / 2;
-  const auto centre = [&](std::int32_t item) {
+  const auto center = [&](std::int32_t item) {
     return at(boxes_, item).low[axis] + at(boxes_, item).high[axis];
   };
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](std::int32_t a, std::int32_t b) {
-                     return centre(a) != centre(b) ? centre(a) < centre(b) : a < b;
+                     return center(a) != center(b) ? center(a) < center(b) : a < b;
                    });
   build(begin, middle);
   nodes_[index].second = static_cast<std::int32_t>(nodes_.size());

@@ -116,7 +116,7 @@ class ImageSums {
         transfer_(part.body),
         sums_(part.geometry.tets.size()) {}
 
-  /// Each voxel of the foreground counts at its centre, for its owner.
+  /// Each voxel of the foreground counts at its center, for its owner.
   void add_owned(const ModelTets& tets, std::size_t first_tet) {
     const Grid& grid = image_.volume.grid;
     const std::vector<std::int32_t> owner = voxel_owners(
@@ -133,11 +133,11 @@ class ImageSums {
           sums_[t].covered += 1;
           const std::optional<Material> material = transfer_.at(value);
           if (!material) continue;
-          const Point3 centre = grid.world_of(
+          const Point3 center = grid.world_of(
               {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
           sums_[t].add_moduli(*material, part_.body.mean, 1);
           sums_[t].add_mass(material->density * voxel_volume_,
-                            weights_at(centre, node_of(t, 0), tets.gradient[first_tet + t]));
+                            weights_at(center, node_of(t, 0), tets.gradient[first_tet + t]));
         }
       }
     }

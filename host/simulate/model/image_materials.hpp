@@ -18,7 +18,7 @@ struct ImageMaterials {
 /// Every voxel of the foreground counts once. Where cells are small, each tetrahedron has its exact
 /// share of the voxel's box: masses are sums of the integrals of density N_a N_b over these parts.
 /// Otherwise the voxel belongs to the tetrahedron that owns it: masses are sums of density x volume
-/// x N_a N_b at the centre. Moduli are the means over the parts times the covered part of the
+/// x N_a N_b at the center. Moduli are the means over the parts times the covered part of the
 /// tetrahedron's volume, which is taken as 0.02 at least.
 class ImageMaterialsOfBodies {
  public:

@@ -13,9 +13,9 @@
 
 namespace tetwarp {
 namespace {
-Point3 nearest_in_ball(const Point3& centre, double radius, const Point3& x) {
-  const double distance = norm(minus(x, centre));
-  return distance <= radius ? x : plus(centre, times(radius / distance, minus(x, centre)));
+Point3 nearest_in_ball(const Point3& center, double radius, const Point3& x) {
+  const double distance = norm(minus(x, center));
+  return distance <= radius ? x : plus(center, times(radius / distance, minus(x, center)));
 }
 
 }  // namespace
@@ -95,13 +95,13 @@ NearestMaterial MaterialFinder::nearest_of_body(std::int32_t body, const Point3&
   } else if (search.surface) {
     const std::int32_t rigid = at(model_.body_rigid, body);
     const Quaternion& axes = at(model_.rigid.axes, rigid);
-    const Point3& centre = at(model_.rigid.centre, rigid);
+    const Point3& center = at(model_.rigid.center, rigid);
     const Point3 arm = minus(x_world, at(model_.start.position, model_.node_count + rigid));
     const Point3 principal = rotate(conjugate(at(model_.start.rotation, rigid)), arm);
-    const Point3 local = plus(centre, rotate(axes, principal));
+    const Point3 local = plus(center, rotate(axes, principal));
     const Point3 nearest = search.nearest_of_solid(local);
     result.point.rigid = rigid;
-    result.point.local = rotate(conjugate(axes), minus(nearest, centre));
+    result.point.local = rotate(conjugate(axes), minus(nearest, center));
     result.distance = norm(minus(nearest, local));
   } else if (!search.corners.empty()) {
     const auto found = search.triangles->find(x_world);
@@ -135,7 +135,7 @@ NearestMaterial MaterialFinder::nearest(const std::string& name, const Point3& x
       const double height = dot(normal, minus(x, plane->point));
       if (height > 0) nearest = minus(x, times(height, normal));
     } else if (const auto* sphere = std::get_if<SphereObstacle>(&obstacle.geometry)) {
-      nearest = nearest_in_ball(sphere->centre, sphere->radius, x);
+      nearest = nearest_in_ball(sphere->center, sphere->radius, x);
     } else if (const auto* capsule = std::get_if<CapsuleObstacle>(&obstacle.geometry)) {
       const auto [w0, w1] = nearest_on(std::array{capsule->from, capsule->to}, x).weight;
       const Point3 foot = plus(times(w0, capsule->from), times(w1, capsule->to));

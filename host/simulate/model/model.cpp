@@ -52,19 +52,19 @@ void add_nodes(const Body& body, const BodyGeometry& geometry, Model& model) {
   model.node_count += static_cast<std::int32_t>(positions.size());
 }
 
-/// The start velocity of a body whose masses are known: v + omega x (x - centre of mass).
+/// The start velocity of a body whose masses are known: v + omega x (x - center of mass).
 void set_velocities(const BodyPart& part, Model& model) {
   const auto first = static_cast<std::size_t>(part.first_node);
   double mass = 0;
-  Point3 centre{0, 0, 0};
+  Point3 center{0, 0, 0};
   for (std::size_t n = first; n < first + part.geometry.nodes.size(); ++n) {
     mass += model.node_mass[n];
-    centre = plus(centre, times(model.node_mass[n], model.start.position[n]));
+    center = plus(center, times(model.node_mass[n], model.start.position[n]));
   }
-  centre = times(1 / mass, centre);
+  center = times(1 / mass, center);
   for (std::size_t n = first; n < first + part.geometry.nodes.size(); ++n) {
     if (model.prescribed[n] != 0) continue;
-    const Point3 arm = minus(model.start.position[n], centre);
+    const Point3 arm = minus(model.start.position[n], center);
     model.start.velocity[n] = plus(part.body.velocity, cross(part.body.angular_velocity, arm));
   }
 }

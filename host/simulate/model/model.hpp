@@ -22,7 +22,7 @@ struct ModelPoint {
   std::array<std::int32_t, 4> node{-1, -1, -1, -1};  ///< of the model; those not used are -1
   std::array<double, 4> weight{0, 0, 0, 0};          ///< sum 1 over the nodes used
   std::int32_t rigid = -1;                           ///< rigid body of the model
-  Point3 local{0, 0, 0};  ///< rigid: from the centre of mass in the frame of its principal axes;
+  Point3 local{0, 0, 0};  ///< rigid: from the center of mass in the frame of its principal axes;
                           ///< world: the position at the start
 };
 
@@ -65,14 +65,14 @@ struct ModelRigid {
   std::vector<double> mass;        ///< [kg]; prescribed: 0
   std::vector<Point3> inertia;     ///< principal moments [kg m^2]; prescribed: 0
   std::vector<double> alpha;       ///< damping [1/s]
-  std::vector<Point3> centre;      ///< of mass, in the frame of the geometry [m]
+  std::vector<Point3> center;      ///< of mass, in the frame of the geometry [m]
   std::vector<std::array<double, 4>>
       axes;  ///< principal axes to the frame of the geometry, w x y z
 };
 
 /// State at the start, or of a step: see dynamics in docs/simulate.md.
 struct ModelState {
-  std::vector<Point3> position;  ///< [node_count] nodes, then [rigid_count] centres of mass
+  std::vector<Point3> position;  ///< [node_count] nodes, then [rigid_count] centers of mass
   std::vector<std::array<double, 4>> rotation;  ///< [rigid_count] principal axes to world, w x y z
   std::vector<Point3> velocity;                 ///< [block_count]
   std::vector<Point3> angular_momentum;         ///< [rigid_count]

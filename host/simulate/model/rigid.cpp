@@ -37,9 +37,9 @@ RigidProperties properties_of(const Surface& surface, double density) {
   }
   RigidProperties result;
   result.mass = density * volume;
-  const Point3 centre = times(1 / volume, first);
-  result.centre = plus(origin, centre);
-  add_square(-volume, centre);
+  const Point3 center = times(1 / volume, first);
+  result.center = plus(origin, center);
+  add_square(-volume, center);
   const double trace = second[0] + second[4] + second[8];
   for (std::size_t i = 0; i < 9; ++i) {
     result.inertia[i] = density * ((i % 4 == 0 ? trace : 0) - second[i]);
@@ -101,12 +101,12 @@ void add_rigid(const BodyPart& part, Model& model) {
   model.rigid.mass.push_back(properties.mass);
   model.rigid.inertia.push_back(moment);
   model.rigid.alpha.push_back(body.damping.alpha);
-  model.rigid.centre.push_back(properties.centre);
+  model.rigid.center.push_back(properties.center);
   model.rigid.axes.push_back(principal.axes);
   const Quaternion rotation = product(normalized(body.pose.rotation), principal.axes);
   Point3 momentum = rotate(conjugate(rotation), body.angular_velocity);
   for (std::size_t d = 0; d < 3; ++d) momentum[d] *= moment[d];
-  model.start.position.push_back(world_of(body.pose, properties.centre));
+  model.start.position.push_back(world_of(body.pose, properties.center));
   model.start.rotation.push_back(rotation);
   model.start.angular_momentum.push_back(rotate(rotation, momentum));
   model.start.velocity.push_back(body.velocity);
@@ -120,7 +120,7 @@ std::int32_t add_frame(std::int32_t body, const Pose& pose, Model& model) {
   model.rigid.mass.push_back(0);
   model.rigid.inertia.push_back({0, 0, 0});
   model.rigid.alpha.push_back(0);
-  model.rigid.centre.push_back({0, 0, 0});
+  model.rigid.center.push_back({0, 0, 0});
   model.rigid.axes.push_back({1, 0, 0, 0});
   model.start.position.push_back(pose.position);
   model.start.rotation.push_back(normalized(pose.rotation));

@@ -9,10 +9,10 @@
 
 namespace tetwarp {
 
-/// Mass, centre and inertia about it, in the frame of the geometry.
+/// Mass, center and inertia about it, in the frame of the geometry.
 struct RigidProperties {
   double mass = 0;                  ///< [kg]
-  Point3 centre{0, 0, 0};           ///< [m]
+  Point3 center{0, 0, 0};           ///< [m]
   std::array<double, 9> inertia{};  ///< row major [kg m^2]
 };
 

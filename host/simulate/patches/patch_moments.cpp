@@ -19,7 +19,7 @@ PatchPoints PatchMoments::points_of(const std::vector<ReportedContact>& contacts
                                     const std::vector<Point3>& vertices) {
   PatchPoints result;
   corners_.clear();
-  Point3 normal{0, 0, 0}, centre{0, 0, 0};
+  Point3 normal{0, 0, 0}, center{0, 0, 0};
   double gap = 0;
   for (const std::size_t c : patch) {
     const ReportedContact& contact = contacts[c];
@@ -27,16 +27,16 @@ PatchPoints PatchMoments::points_of(const std::vector<ReportedContact>& contacts
     corners_.emplace_back(vertex_of(contact), c);
     result.area += contact.area;
     normal = plus(normal, times(contact.area, contact.normal));
-    centre = plus(centre, times(contact.area, middle_of(contact)));
+    center = plus(center, times(contact.area, middle_of(contact)));
     gap += contact.area * gap_of(contact);
   }
   if (!(result.area > 0)) return result;
   std::sort(corners_.begin(), corners_.end());
   result.normal = unit(normal);
-  centre = times(1 / result.area, centre);
+  center = times(1 / result.area, center);
   gap /= result.area;
 
-  const PatchFrame frame(result.normal, centre);
+  const PatchFrame frame(result.normal, center);
   Moments moments;
   double xg = 0, yg = 0;
   for (const auto& [vertex, c] : corners_) {
@@ -64,7 +64,7 @@ PatchPoints PatchMoments::points_of(const std::vector<ReportedContact>& contacts
     const double reach = (k % 2 == 0 ? 1 : -1) * std::sqrt(2 * moment);
     const double angle = axes.angle + (k < 2 ? 0 : std::acos(0.0));
     const double x = reach * std::cos(angle), y = reach * std::sin(angle);
-    result.point[k] = {plus(centre, frame.across(x, y)), gap + slope_x * x + slope_y * y};
+    result.point[k] = {plus(center, frame.across(x, y)), gap + slope_x * x + slope_y * y};
   }
   return result;
 }

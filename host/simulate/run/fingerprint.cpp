@@ -167,8 +167,8 @@ void add_model(const Model& model, Hash& hash) {
                body_island, island_count, start] = model;
   hash.add(body_node, body_rigid, prescribed);
   add_elements(model, hash);
-  const auto& [body, mass, inertia, alpha, centre, axes] = rigid;
-  hash.add(mass, inertia, alpha, centre);
+  const auto& [body, mass, inertia, alpha, center, axes] = rigid;
+  hash.add(mass, inertia, alpha, center);
   const auto& [position, rotation, velocity, angular_momentum] = start;
   hash.add(position, velocity, rotation, angular_momentum);
 }

@@ -33,7 +33,7 @@ class IslandLists {
   std::size_t block_count() const { return block_body_.size(); }
   /// The rigid body whose angular velocity a block is, -1: of another block.
   std::int32_t turning_frame(std::int32_t block) const;
-  /// Position of a node, or of the centre of mass of a rigid body. @pre turning_frame(block) is -1
+  /// Position of a node, or of the center of mass of a rigid body. @pre turning_frame(block) is -1
   const Point3& place_of(std::int32_t block, const ModelState& state) const;
   /// Diagonal of the box of the body of a block at the start [m]; of obstacles 0.
   double size_of(std::int32_t block) const;

@@ -40,7 +40,7 @@ CagePose::CagePose(const StartParts& parts, const Model& model, const ShrunkBody
   for (const Point3& vertex : cage_.vertices) {
     target_.push_back(world_of(parts.scene.bodies[index].pose, vertex));
     vertices_.push_back(
-        plus(shrunk.centre, times(shrunk.scale, minus(target_.back(), shrunk.centre))));
+        plus(shrunk.center, times(shrunk.scale, minus(target_.back(), shrunk.center))));
   }
   for (std::size_t t = 0; t < model.tets.nodes.size(); ++t) {
     if (has_node(model.tets.nodes[t][0])) tets_.push_back(static_cast<std::int32_t>(t));

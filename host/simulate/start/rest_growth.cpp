@@ -79,11 +79,11 @@ void RestGrowth::add_forces(const GrowingBody& body,
 void RestGrowth::apply(const Model& model, const ModelState& state, StepInput& input) const {
   const double part = std::min(input.end_time / duration, 1.0);
   for (const GrowingBody& body : bodies_) {
-    const Point3& centre = body.shrunk.centre;
+    const Point3& center = body.shrunk.center;
     const double scale = body.shrunk.scale + (1 - body.shrunk.scale) * part;
     if (scale < 1) add_forces(body, scale, model, state, input.block_force);
     const auto head_for = [&](std::int32_t node, const Point3& full) {
-      const Point3 target = scale < 1 ? plus(centre, times(scale, minus(full, centre))) : full;
+      const Point3 target = scale < 1 ? plus(center, times(scale, minus(full, center))) : full;
       input.prescribed_velocity[index_of(node)] =
           times(1 / input.time_step, minus(target, at(state.position, node)));
     };

@@ -194,7 +194,7 @@ class StartSearch {
         const bool is_outside =
             x[1] < box.low[1] || x[1] > box.high[1] || x[2] < box.low[2] || x[2] > box.high[2];
         if (is_outside || a == b || !may_meet(a, b)) continue;
-        // The centre of a ball around a whole body may be inside that body.
+        // The center of a ball around a whole body may be inside that body.
         const bool is_round = at(surfaces_.vertex_radius, part->second) > 0;
         if (is_round && found_.contains({std::min(a, b), std::max(a, b)})) continue;
         if (winding_number(*surface, x) < 0.5) continue;

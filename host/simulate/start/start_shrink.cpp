@@ -30,12 +30,12 @@ class ShrinkingBodies {
               const SurfacePlaces& places) {
     const auto [entry, is_new] = bodies_.emplace(body, ShrunkBody{body, {0, 0, 0}, 1});
     ShrunkBody& shrunk = entry->second;
-    if (is_new) shrunk.centre = medial_node(parts_, places, nodes_of(body), body, others);
+    if (is_new) shrunk.center = medial_node(parts_, places, nodes_of(body), body, others);
     if (shrunk.scale * factor < least_scale) return false;
     shrunk.scale *= factor;
     for (std::int32_t n = first(body); n < first(body + 1); ++n) {
       model_.start.position[static_cast<std::size_t>(n)] =
-          plus(shrunk.centre, times(shrunk.scale, minus(at(start_, n), shrunk.centre)));
+          plus(shrunk.center, times(shrunk.scale, minus(at(start_, n), shrunk.center)));
     }
     return true;
   }

@@ -10,10 +10,10 @@
 
 namespace tetwarp {
 
-/// A body whose nodes are at centre + scale (x - centre), where x are their positions at full size.
+/// A body whose nodes are at center + scale (x - center), where x are their positions at full size.
 struct ShrunkBody {
   std::int32_t body = 0;
-  Point3 centre{0, 0, 0};
+  Point3 center{0, 0, 0};
   double scale = 1;
 };
 

@@ -185,8 +185,8 @@ struct StepArrays {
   template <class T>
   using Vector = typename Exec::template LargeVector<T>;
 
-  Vector<double> position, centre, rotation, velocity, angular_momentum;  ///< of ModelState
-  Vector<double> previous;                                                ///< NodeMovedBody
+  Vector<double> position, center, rotation, velocity, angular_momentum;  ///< of ModelState
+  Vector<double> previous;                                                ///< NodeMovedOp
   Vector<double>
       fraction;  ///< [nodes, then rigid bodies] part of the step that each moves; empty: all
   typename Exec::template Input<double> prescribed, force, guess, anchor,

@@ -41,7 +41,7 @@ class BodyPipeline {
     const double* const position = numbers_of(state.position).data;
     const std::int64_t nodes = 3 * std::int64_t{model_.node_count};
     exec_.put(position, nodes, now_.position);
-    exec_.put(position + nodes, 3 * std::int64_t{model_.rigid_count}, now_.centre);
+    exec_.put(position + nodes, 3 * std::int64_t{model_.rigid_count}, now_.center);
     put(numbers_of(state.rotation), now_.rotation);
     put(numbers_of(state.velocity), now_.velocity);
     put(numbers_of(state.angular_momentum), now_.angular_momentum);
@@ -52,7 +52,7 @@ class BodyPipeline {
   void forget_steps() {
     exec_.for_each(
         forces_label, exec_.view(now_.previous).size,
-        FillNumbersBody{std::numeric_limits<double>::quiet_NaN(), exec_.view(now_.previous)});
+        FillNumbersOp{std::numeric_limits<double>::quiet_NaN(), exec_.view(now_.previous)});
     assembled_time_step_ = 0;
   }
 
@@ -62,7 +62,7 @@ class BodyPipeline {
     state.angular_momentum.resize(state.rotation.size());
     state.velocity.resize(static_cast<std::size_t>(model_.block_count()));
     exec_.get_all({to_host(now_.position, state.position.data()),
-                   to_host(now_.centre, state.position.data() + model_.node_count),
+                   to_host(now_.center, state.position.data() + model_.node_count),
                    to_host(now_.rotation, state.rotation.data()),
                    to_host(now_.angular_momentum, state.angular_momentum.data()),
                    to_host(now_.velocity, state.velocity.data())});
@@ -183,26 +183,26 @@ class BodyPipeline {
   void forces(const StepInput& input) {
     const auto position = const_view(now_.position);
     exec_.for_each(forces_label, model_.node_count,
-                   NodeMovedBody{position, exec_.view(now_.previous), exec_.view(now_.has_moved)});
+                   NodeMovedOp{position, exec_.view(now_.previous), exec_.view(now_.has_moved)});
     const auto moved = const_view(now_.has_moved);
     tet_forces(exec_, forces_label,
-               TetForceBody{constants_.tets, position, moved, options_.skip.rotations,
-                            exec_.view(now_.turned), exec_.view(now_.tet_force),
-                            exec_.view(now_.tet_has_turned), exec_.view(now_.tet_is_skipped)});
+               TetForceOp{constants_.tets, position, moved, options_.skip.rotations,
+                          exec_.view(now_.turned), exec_.view(now_.tet_force),
+                          exec_.view(now_.tet_has_turned), exec_.view(now_.tet_is_skipped)});
     exec_.for_each(forces_label, count_of(model_.edges.nodes),
-                   EdgeSpringBody{constants_.edge_nodes, constants_.edge_stiffness,
-                                  constants_.edge_rest, position, moved, exec_.view(now_.edge_pull),
-                                  exec_.view(now_.edge_has_turned)});
+                   EdgeSpringOp{constants_.edge_nodes, constants_.edge_stiffness,
+                                constants_.edge_rest, position, moved, exec_.view(now_.edge_pull),
+                                exec_.view(now_.edge_has_turned)});
     exec_.for_each(
         forces_label, count_of(model_.springs.a),
-        PointSpringBody{constants_.springs, position,
-                        RigidPlaces{const_view(now_.centre), const_view(now_.rotation)},
-                        const_view(now_.anchor), const_view(now_.anchor_velocity),
-                        const_view(now_.is_active), input.time_step, exec_.view(now_.spring_pull)});
+        PointSpringOp{constants_.springs, position,
+                      RigidPlaces{const_view(now_.center), const_view(now_.rotation)},
+                      const_view(now_.anchor), const_view(now_.anchor_velocity),
+                      const_view(now_.is_active), input.time_step, exec_.view(now_.spring_pull)});
     exec_.for_each(forces_label, model_.rigid_count,
-                   RigidMidpointBody{constants_.moments, const_view(now_.rotation),
-                                     const_view(now_.angular_momentum), input.time_step,
-                                     exec_.view(now_.inertia)});
+                   RigidMidpointOp{constants_.moments, const_view(now_.rotation),
+                                   const_view(now_.angular_momentum), input.time_step,
+                                   exec_.view(now_.inertia)});
   }
 
   void assemble(const StepInput& input) {
@@ -216,8 +216,8 @@ class BodyPipeline {
     rigid.inertia = const_view(now_.inertia);
     const bool skips = options_.skip.blocks && dt == assembled_time_step_;
     block_assemble(exec_, assembly_label,
-                   BlockAssembleBody{rows, from, constants_.scalars, rigid, dt, skips,
-                                     exec_.view(now_.values), exec_.view(now_.block_is_skipped)});
+                   BlockAssembleOp{rows, from, constants_.scalars, rigid, dt, skips,
+                                   exec_.view(now_.values), exec_.view(now_.block_is_skipped)});
     assembled_time_step_ = dt;
     const LoadInput load = {{input.gravity[0], input.gravity[1], input.gravity[2]},
                             const_view(now_.force),
@@ -229,7 +229,7 @@ class BodyPipeline {
                             const_view(now_.is_asleep)};
     exec_.for_each(
         assembly_label, rows.count,
-        RowLoadBody{rows, from, constants_.scalars, rigid, load, dt, exec_.view(now_.load)});
+        RowLoadOp{rows, from, constants_.scalars, rigid, load, dt, exec_.view(now_.load)});
   }
 
   void solve(StepOutcome& outcome) {
@@ -237,19 +237,20 @@ class BodyPipeline {
     const auto values = const_view(now_.values), x = const_view(now_.x);
     const auto guess = const_view(now_.guess);
     exec_.for_each(linear_label, rows.count,
-                   RowVelocityBody{rows, guess.size > 0 ? guess : const_view(now_.velocity),
-                                   const_view(now_.prescribed), exec_.view(now_.x)});
+                   RowVelocityOp{rows, guess.size > 0 ? guess : const_view(now_.velocity),
+                                 const_view(now_.prescribed), exec_.view(now_.x)});
     exec_.for_each(linear_label, rows.unknown_count,
-                   RowPrescribedBody{rows, values, x, exec_.view(now_.load)});
+                   RowPrescribedOp{rows, values, x, exec_.view(now_.load)});
     const GradientArrays<T> a = solve_.views(exec_, rows, model_.node_count, values,
                                              const_view(now_.load), exec_.view(now_.x));
-    exec_.for_each(linear_label, rows.unknown_count, RowInvertBody<T>{rows, values, a.inverse});
+    exec_.for_each(linear_label, rows.unknown_count, RowInvertOp<T>{rows, values, a.inverse});
     if constexpr (!std::is_same_v<T, double>) {
-      exec_.for_each(linear_label, values.size, RoundBody{values, exec_.view(solve_.copy)});
+      exec_.for_each(linear_label, values.size, RoundOp{values, exec_.view(solve_.copy)});
     }
     const GradientOptions limits = {options_.linear_tolerance, options_.max_iterations};
     const auto proceed = [&](std::int64_t iterations) {
-      outcome.completed = outcome.completed && !(options_.progress && !options_.progress(iterations));
+      outcome.completed =
+          outcome.completed && !(options_.progress && !options_.progress(iterations));
       const bool is_late = options_.clock != nullptr && iterations > 0 && options_.clock->is_over();
       return outcome.completed && !is_late;
     };
@@ -259,7 +260,7 @@ class BodyPipeline {
       outcome.linear_residual = std::max(outcome.linear_residual, end.residual);
     });
     if (!outcome.completed) return;
-    exec_.for_each(linear_label, rows.count, BlockVelocityBody{rows, x, exec_.view(now_.velocity)});
+    exec_.for_each(linear_label, rows.count, BlockVelocityOp{rows, x, exec_.view(now_.velocity)});
   }
 
   void update(double time_step) {
@@ -268,22 +269,22 @@ class BodyPipeline {
     const std::int64_t nodes = fraction.size == 0 ? 0 : model_.node_count;
     // The velocities may be those of set_velocities(); those of prescribed blocks stay.
     exec_.for_each(update_label, rows.count,
-                   RowVelocityBody{rows, velocity, velocity, exec_.view(now_.x)});
+                   RowVelocityOp{rows, velocity, velocity, exec_.view(now_.x)});
     exec_.for_each(update_label, rows.count - rows.unknown_count,
-                   RowSupportBody{rows, const_view(now_.values), const_view(now_.x),
-                                  const_view(now_.load), exec_.view(now_.support)});
+                   RowSupportOp{rows, const_view(now_.values), const_view(now_.x),
+                                const_view(now_.load), exec_.view(now_.support)});
     exec_.for_each(
         update_label, 3 * std::int64_t{model_.node_count},
-        NodeUpdateBody{velocity, time_step, {fraction.data, nodes}, exec_.view(now_.position)});
+        NodeUpdateOp{velocity, time_step, {fraction.data, nodes}, exec_.view(now_.position)});
     exec_.for_each(update_label, model_.rigid_count,
-                   RigidUpdateBody{velocity,
-                                   model_.node_count,
-                                   const_view(now_.inertia),
-                                   time_step,
-                                   {fraction.data + nodes, fraction.size - nodes},
-                                   exec_.view(now_.centre),
-                                   exec_.view(now_.rotation),
-                                   exec_.view(now_.angular_momentum)});
+                   RigidUpdateOp{velocity,
+                                 model_.node_count,
+                                 const_view(now_.inertia),
+                                 time_step,
+                                 {fraction.data + nodes, fraction.size - nodes},
+                                 exec_.view(now_.center),
+                                 exec_.view(now_.rotation),
+                                 exec_.view(now_.angular_momentum)});
   }
 
   /// Rotations and blocks that the skips have left out; a device waits once for both.
@@ -291,8 +292,8 @@ class BodyPipeline {
     const View<const std::uint8_t> tets = const_view(now_.tet_is_skipped);
     const View<const std::uint8_t> blocks = const_view(now_.block_is_skipped);
     const View<FlagCount> counts = exec_.view(counts_);
-    exec_.sum_to(count_label, 0, tets.size, FlagCountBody{tets}, &counts[0]);
-    exec_.sum_to(count_label, 0, blocks.size, FlagCountBody{blocks}, &counts[1]);
+    exec_.sum_to(count_label, 0, tets.size, FlagCountOp{tets}, &counts[0]);
+    exec_.sum_to(count_label, 0, blocks.size, FlagCountOp{blocks}, &counts[1]);
     FlagCount totals[2];
     exec_.get(View<const FlagCount>(counts), totals);
     outcome.skipped_rotations = totals[0].value;

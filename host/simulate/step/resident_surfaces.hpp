@@ -26,7 +26,7 @@ struct ResidentMotion {
   View<const double> start, end;              ///< [vertices][3]
   View<const double> sagitta;                 ///< [vertices]
   View<const double> plane_start, plane_end;  ///< [planes][6]
-  View<const double> frames;                  ///< [bodies, then obstacles][9] centre, motion, turn
+  View<const double> frames;                  ///< [bodies, then obstacles][9] center, motion, turn
 };
 
 class ResidentSurfaces {

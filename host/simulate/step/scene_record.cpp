@@ -38,7 +38,7 @@ double spring_energy(const Model& model,
   return energy;
 }
 
-/// Centres, then what the blocks of masses add: kinetic energy, angular momenta, bending.
+/// Centers, then what the blocks of masses add: kinetic energy, angular momenta, bending.
 void record_nodes(const Model& model, const ModelState& state, StepRecord& record) {
   const std::size_t body_count = record.bodies.size();
   std::vector<double> mass(body_count, 0);
@@ -50,11 +50,11 @@ void record_nodes(const Model& model, const ModelState& state, StepRecord& recor
     for (std::size_t n = begin; n < end; ++n) {
       const double weight = mass[b] > 0 ? model.node_mass[n] : 1;  // scripted: the mean of nodes
       sum += weight;
-      body.centre = plus(body.centre, times(weight, state.position[n]));
+      body.center = plus(body.center, times(weight, state.position[n]));
       body.velocity = plus(body.velocity, times(weight, state.velocity[n]));
     }
     if (begin == end) continue;
-    body.centre = times(1 / sum, body.centre);
+    body.center = times(1 / sum, body.center);
     body.velocity = times(1 / sum, body.velocity);
     record.momentum = plus(record.momentum, times(mass[b], body.velocity));
   }
@@ -64,7 +64,7 @@ void record_nodes(const Model& model, const ModelState& state, StepRecord& recor
     const auto [i, j] = blocks.nodes[k];
     while (i >= model.body_node[b + 1]) ++b;
     BodyRecord& body = record.bodies[b];
-    const Point3 arm = minus(at(state.position, i), body.centre);
+    const Point3 arm = minus(at(state.position, i), body.center);
     const Point3 momentum = times(blocks.mass[k], at(state.velocity, j));
     record.energy.kinetic += dot(at(state.velocity, i), momentum) / 2;
     body.angular_momentum = plus(body.angular_momentum, cross(arm, momentum));
@@ -76,7 +76,7 @@ void record_nodes(const Model& model, const ModelState& state, StepRecord& recor
   for (std::size_t of = 0; of < body_count; ++of) {
     const BodyRecord& body = record.bodies[of];
     if (!(mass[of] > 0)) continue;
-    const Point3 orbital = times(mass[of], cross(body.centre, body.velocity));
+    const Point3 orbital = times(mass[of], cross(body.center, body.velocity));
     record.angular_momentum = plus(record.angular_momentum, plus(body.angular_momentum, orbital));
   }
 }
@@ -87,7 +87,7 @@ void record_rigid(const Model& model, const ModelState& state, StepRecord& recor
     if (b >= record.bodies.size()) continue;
     BodyRecord& body = record.bodies[b];
     const double mass = at(model.rigid.mass, r);
-    body.centre = at(state.position, model.node_count + r);
+    body.center = at(state.position, model.node_count + r);
     body.velocity = at(state.velocity, model.node_count + 2 * r);
     body.angular_momentum = at(state.angular_momentum, r);
     body.angular_velocity = angular_velocity_of(model, state, r);
@@ -98,7 +98,7 @@ void record_rigid(const Model& model, const ModelState& state, StepRecord& recor
         dot(momentum, body.velocity) / 2 + dot(body.angular_momentum, body.angular_velocity) / 2;
     record.momentum = plus(record.momentum, momentum);
     record.angular_momentum =
-        plus(record.angular_momentum, plus(body.angular_momentum, cross(body.centre, momentum)));
+        plus(record.angular_momentum, plus(body.angular_momentum, cross(body.center, momentum)));
   }
 }
 

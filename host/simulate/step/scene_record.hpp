@@ -20,7 +20,7 @@ std::int64_t inverted_count(const Model& model, const ModelState& state);
 /// omega = R I^-1 R^T L of a rigid body; of a prescribed frame 0.
 Point3 angular_velocity_of(const Model& model, const ModelState& state, std::int32_t rigid);
 
-/// Fills energies without work, momenta, and of each body centre, velocity, angular momentum,
+/// Fills energies without work, momenta, and of each body center, velocity, angular momentum,
 /// rotation and angular velocity. Sums are in index order.
 /// @param handles  displacements of the anchors of each handle; nothing: let go
 /// @param record   `bodies` has one entry per body of the scene; `energy.elastic` is that of the

@@ -56,7 +56,7 @@ struct SolveArrays {
 };
 
 /// One index = one number: rounds it.
-struct RoundBody {
+struct RoundOp {
   View<const double> from;
   View<float> to;
   TETWARP_HD void operator()(std::int64_t i) const { to[i] = static_cast<float>(from[i]); }

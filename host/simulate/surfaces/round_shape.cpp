@@ -45,7 +45,7 @@ std::optional<RoundShape> round_shape_of(const Body& body) {
 
 std::optional<RoundShape> round_shape_of(const Obstacle& obstacle) {
   if (const auto* ball = std::get_if<SphereObstacle>(&obstacle.geometry)) {
-    return RoundShape{ball->centre, ball->centre, ball->radius};
+    return RoundShape{ball->center, ball->center, ball->radius};
   }
   if (const auto* capsule = std::get_if<CapsuleObstacle>(&obstacle.geometry)) {
     return RoundShape{capsule->from, capsule->to, capsule->radius};

@@ -178,7 +178,7 @@ class SurfaceParts {
     point.body = body_;
     point.rigid = at(frame_, body_);
     point.local = rotate(conjugate(at(model_.rigid.axes, point.rigid)),
-                         minus(x, at(model_.rigid.centre, point.rigid)));
+                         minus(x, at(model_.rigid.center, point.rigid)));
     return point;
   }
 

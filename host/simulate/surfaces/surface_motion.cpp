@@ -79,7 +79,7 @@ void surface_places(const SceneSurfaces& scene,
   places.planes.resize(scene.plane_local.size());
   for (std::size_t p = 0; p < scene.plane_local.size(); ++p) {
     const std::int64_t rigid = scene.plane_rigid[p];
-    frame_plane(at.centre.data + 3 * rigid, at.rotation.data + 4 * rigid,
+    frame_plane(at.center.data + 3 * rigid, at.rotation.data + 4 * rigid,
                 numbers_of(scene.plane_local[p]), numbers_of(places.planes[p]));
   }
 }

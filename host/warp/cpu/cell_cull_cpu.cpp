@@ -151,7 +151,7 @@ void cell_cull(CpuExec& exec,
                      });
 }
 
-void cell_ranges(CpuExec& exec, const CellRangeBody& body) {
+void cell_ranges(CpuExec& exec, const CellRangeOp& body) {
   const std::int64_t all_cells[2] = {0, body.ranges.size};
   exec.for_each_span("warp/cull", {all_cells, 2}, body.ranges.size,
                      [&](std::int64_t, std::int64_t first, std::int64_t past, std::int64_t) {

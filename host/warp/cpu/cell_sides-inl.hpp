@@ -46,10 +46,10 @@ inline int count_of(const CellBits& bits) {
 
 using SliceTag = hn::CappedTag<SliceBits, cell_edge>;  ///< one lane per slice
 
-/// Calls body(lane) for the first slice of each vector of slices.
-template <class Body>
-HWY_INLINE void for_slices(const Body& body) {
-  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(SliceTag())) body(lane);
+/// Calls op(lane) for the first slice of each vector of slices.
+template <class Op>
+HWY_INLINE void for_slices(const Op& op) {
+  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(SliceTag())) op(lane);
 }
 
 /// Bit 8 k + j: row (j, k) has a voxel.

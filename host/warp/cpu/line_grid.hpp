@@ -1,6 +1,6 @@
 /// @file line_grid.hpp
 /// The order in which the cpu back end visits cells: lines along x. A piece of work is a few
-/// neighbouring lines, which read parts of the source that are in the cache already.
+/// neighboring lines, which read parts of the source that are in the cache already.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -34,7 +34,7 @@ class LineGrid {
     return {p * piece_lines, std::min(count(), (p + 1) * piece_lines)};
   }
 
-  /// Line number l; lines with neighbouring cj have successive numbers.
+  /// Line number l; lines with neighboring cj have successive numbers.
   Line line(std::int64_t l) const {
     const int cj = static_cast<int>(l % cells_[1]);
     const std::int64_t rest = l / cells_[1];

@@ -1,5 +1,5 @@
 /// @file row_label_batch-inl.hpp
-/// The filter for labels where the neighbours of a voxel differ, one voxel per lane. Included once
+/// The filter for labels where the neighbors of a voxel differ, one voxel per lane. Included once
 /// per vector instruction set.
 #if defined(TETWARP_ROW_LABEL_BATCH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_LABEL_BATCH_INL
@@ -41,14 +41,14 @@ T label_of(std::int64_t key) {
   }
 }
 
-/// Voxels whose eight neighbours do not all have one label.
+/// Voxels whose eight neighbors do not all have one label.
 struct LabelBatch {
   static constexpr int capacity = 64;
 
   int count = 0;
   std::int32_t place[capacity];               ///< of the voxel in the row
-  alignas(64) std::int64_t key[8][capacity];  ///< of the neighbours, x fastest
-  alignas(64) double fraction[3][capacity];   ///< from the lower to the upper neighbours
+  alignas(64) std::int64_t key[8][capacity];  ///< of the neighbors, x fastest
+  alignas(64) double fraction[3][capacity];   ///< from the lower to the upper neighbors
   alignas(64) std::int64_t winner[capacity];  ///< out
 };
 
@@ -61,7 +61,7 @@ HWY_INLINE Share short_product(Share a, Share b) {
   return hn::BitCast(ShareTag(), hn::MulEven(hn::BitCast(half, a), hn::BitCast(half, b)));
 }
 
-/// Integer weights of the eight neighbours of the voxels from `at` on, see heaviest_label().
+/// Integer weights of the eight neighbors of the voxels from `at` on, see heaviest_label().
 HWY_INLINE void find_shares(const LabelBatch& batch, std::size_t at, Share* share) {
   const ShareTag d;
   const hn::Rebind<double, ShareTag> df;
@@ -88,8 +88,8 @@ HWY_INLINE void find_shares(const LabelBatch& batch, std::size_t at, Share* shar
 }
 
 /// The heavier of two labels per lane.
-/// @param share  weights of the neighbours
-/// @param key    labels of the neighbours
+/// @param share  weights of the neighbors
+/// @param key    labels of the neighbors
 /// @param winner out; undefined if the call returns false
 /// @returns whether no lane has a third label
 HWY_INLINE bool heavier_of_two(const Share* share, const Share* key, Share& winner) {

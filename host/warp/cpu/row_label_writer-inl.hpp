@@ -1,5 +1,5 @@
 /// @file row_label_writer-inl.hpp
-/// The filter for labels over the voxels of a row: where all neighbours have one label it is
+/// The filter for labels over the voxels of a row: where all neighbors have one label it is
 /// copied, the other voxels are collected for row_label_batch-inl.hpp. Included once per vector
 /// instruction set.
 #if defined(TETWARP_ROW_LABEL_WRITER_INL) == defined(HWY_TARGET_TOGGLE)
@@ -28,11 +28,11 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Samples of the eight neighbours of a voxel.
+/// Samples of the eight neighbors of a voxel.
 template <class T>
-struct Neighbours {
-  const T* line[4];  ///< at the lower neighbour along x on lines (y, z), (y+1, z), (y, z+1), both
-  std::ptrdiff_t x;  ///< to the upper neighbour along x
+struct Neighbors {
+  const T* line[4];  ///< at the lower neighbor along x on lines (y, z), (y+1, z), (y, z+1), both
+  std::ptrdiff_t x;  ///< to the upper neighbor along x
 
   T at(int corner) const { return line[corner >> 1][(corner & 1) * x]; }
 
@@ -50,7 +50,7 @@ template <class T>
 struct UnitLines {
   struct Line {
     const T* start;
-    const std::int32_t* offset;  ///< from `start` to the lower neighbours along x
+    const std::int32_t* offset;  ///< from `start` to the lower neighbors along x
   };
   Line line[4];
 
@@ -129,7 +129,7 @@ class LabelWriter {
       const int begin = std::countr_zero(bits), end = begin + std::countr_one(bits >> begin);
       bits &= ~0u << end;
       for (int i = begin; i < end; ++i) place_[wide_.count + i - begin] = cell_edge * run.cell + i;
-      add_centres(shape_, map, false, begin, end, wide_);
+      add_centers(shape_, map, false, begin, end, wide_);
       const T* samples = job_.source.data + wide_.offset[wide_.count - 1];
       fetch_next_rows(source, samples);
     }
@@ -160,7 +160,7 @@ class LabelWriter {
     wide_.count = 0;
   }
 
-  /// Writes the voxels whose neighbours differ.
+  /// Writes the voxels whose neighbors differ.
   HWY_NOINLINE void finish() {
     find_winners(batch_);
     for (int n = 0; n < batch_.count; ++n) {
@@ -170,8 +170,8 @@ class LabelWriter {
   }
 
  private:
-  /// Lines around eight voxels whose neighbours are not clamped.
-  /// @param offset  of the lower neighbours
+  /// Lines around eight voxels whose neighbors are not clamped.
+  /// @param offset  of the lower neighbors
   UnitLines<T> lines_at(const std::int32_t* offset) const {
     UnitLines<T> lines;
     for (int l = 0; l < 4; ++l) {
@@ -214,8 +214,8 @@ class LabelWriter {
       const std::ptrdiff_t up = wide_.fraction[1][s] > 0 ? up_ : 0;
       const std::ptrdiff_t far = wide_.fraction[2][s] > 0 ? far_ : 0;
       const T* lower = job_.source.data + wide_.offset[s];
-      const Neighbours<T> near{{lower, lower + up, lower + far, lower + far + up},
-                               wide_.fraction[0][s] > 0 ? 1 : 0};
+      const Neighbors<T> near{{lower, lower + up, lower + far, lower + far + up},
+                              wide_.fraction[0][s] > 0 ? 1 : 0};
       if (near.are_same()) {
         job_.volume[place_[s]] = *lower;
       } else {
@@ -227,7 +227,7 @@ class LabelWriter {
   /// Keeps a voxel for finish().
   /// @param fraction  of samples, per axis
   template <class Fractions>
-  HWY_INLINE void add(const Neighbours<T>& near, int place, const Fractions& fraction, int at) {
+  HWY_INLINE void add(const Neighbors<T>& near, int place, const Fractions& fraction, int at) {
     if (batch_.count == LabelBatch::capacity) finish();
     const int n = batch_.count++;
     batch_.place[n] = place;

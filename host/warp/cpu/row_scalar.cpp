@@ -84,7 +84,7 @@ class RowWalk {
 
   Lanes fraction;
   alignas(16) float fractions[4];
-  alignas(16) std::int32_t voxel[4];  ///< lower neighbour
+  alignas(16) std::int32_t voxel[4];  ///< lower neighbor
 
  private:
   hn::Vec<LaneTag> start_, step_;
@@ -92,7 +92,7 @@ class RowWalk {
 };
 
 /// blended() of volume_filter.hpp for four or six taps that all exist, with equal bits.
-/// @param samples  at the lower neighbour
+/// @param samples  at the lower neighbor
 template <Filter filter, class Sample>
 float blended_lanes(const Sample* samples,
                     std::ptrdiff_t up,
@@ -132,7 +132,7 @@ float blended_lanes(const Sample* samples,
   return near + sum;
 }
 
-/// The sample of one voxel whose neighbours all exist; one component, not labels.
+/// The sample of one voxel whose neighbors all exist; one component, not labels.
 template <class T>
 T sample_lanes(const SourceView<T>& source, Filter filter, const RowWalk& at) {
   const std::ptrdiff_t up = source.dims[0], far = up * source.dims[1];

@@ -27,8 +27,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// How the voxels that a tetrahedron owns in a cell are sampled.
 enum class RowKind : std::uint8_t {
-  inner,  ///< in vectors of float32 positions; all neighbours are in the source
-  rim,    ///< in vectors; positions may lie outside the source and neighbours are clamped
+  inner,  ///< in vectors of float32 positions; all neighbors are in the source
+  rim,    ///< in vectors; positions may lie outside the source and neighbors are clamped
   alone,  ///< voxel by voxel: steep maps, hexahedra, float64, sources of 2^31 voxels or more
   copied  ///< moved by whole voxels
 };
@@ -64,7 +64,7 @@ struct SourceShape {
   std::ptrdiff_t voxel_bytes;
   bool is_vectored;
   double origin[4] = {0, 0, 0, 0};      ///< first voxel that the view holds
-  double inner_low[4] = {0, 0, 0, -1};  ///< between low and high no neighbour is clamped
+  double inner_low[4] = {0, 0, 0, -1};  ///< between low and high no neighbor is clamped
   double inner_high[4] = {0, 0, 0, 1};
   double end[4] = {0, 0, 0, -1};  ///< above it on all axes a read may pass the end of the source
 
@@ -72,8 +72,8 @@ struct SourceShape {
   void set_bounds(bool is_float32) {
     const double voxels = static_cast<double>(dims[0]) * dims[1] * dims[2];
     is_vectored = is_float32 && voxels <= std::numeric_limits<std::int32_t>::max();
-    // A read of two neighbours along x takes eight bytes, a read of components takes four at a
-    // time: either may extend up to `spare` voxels beyond the second neighbour.
+    // A read of two neighbors along x takes eight bytes, a read of components takes four at a
+    // time: either may extend up to `spare` voxels beyond the second neighbor.
     const int spare = components == 1 ? 8 / static_cast<int>(sample_bytes) - 1 : 2;
     // In narrow sources these voxels extend over several rows or slices.
     constexpr double slack = 0.51;  // nearest rounds up
@@ -165,7 +165,7 @@ class RowSource {
   }
 
   /// Sets the prefetch distances. Rows that run along lines of the source next read lines of the
-  /// next slice. Rows that run across lines next read what the neighbouring line of cells reads,
+  /// next slice. Rows that run across lines next read what the neighboring line of cells reads,
   /// one row further.
   void look_ahead(std::int64_t line, std::int64_t slice, std::ptrdiff_t voxel_bytes) {
     const hn::FixedTag<float, 4> d;

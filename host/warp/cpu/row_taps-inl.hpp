@@ -35,7 +35,7 @@ struct RowUnit {
 };
 
 /// Taps of up to `row_units` units.
-/// @tparam is_rim  neighbours may be clamped, so that every voxel needs the offsets of its four
+/// @tparam is_rim  neighbors may be clamped, so that every voxel needs the offsets of its four
 ///                 lines; otherwise these are at fixed distances from the first
 template <bool is_rim>
 struct RowTaps {
@@ -43,7 +43,7 @@ struct RowTaps {
 
   int count = 0;
   RowUnit unit[row_units];
-  /// Offset of the lower neighbour along x on line (y, z), with is_rim also on (y+1, z), (y, z+1)
+  /// Offset of the lower neighbor along x on line (y, z), with is_rim also on (y+1, z), (y, z+1)
   /// and (y+1, z+1) [voxel].
   alignas(64) std::int32_t offset[is_rim ? 4 : 1][cell_edge * row_units];
   alignas(64) float fraction[3][cell_edge * row_units];
@@ -127,9 +127,9 @@ HWY_INLINE RowPositions<is_rim> unit_positions(const RowSource* sources,
   return x;
 }
 
-/// Neighbours of a vector of voxels along one axis.
+/// Neighbors of a vector of voxels along one axis.
 struct AxisTaps {
-  hn::Vec<RowIntTag> voxel;    ///< lower neighbour; without is_rim bits of its number without the
+  hn::Vec<RowIntTag> voxel;    ///< lower neighbor; without is_rim bits of its number without the
                                ///< whole part, plus whole_shift
   hn::Vec<RowTag> fraction;    ///< from it to the upper one
   hn::Vec<RowIntTag> step;     ///< to the upper one in memory [voxel]; is_rim only

@@ -67,7 +67,7 @@ class TransformBatch {
     if (is_averaging(transform)) {
       add_means(source, transform, map, run.bits, first);
     } else {
-      add_centre_samples(source, map, run.bits, first);
+      add_center_samples(source, map, run.bits, first);
     }
   }
 
@@ -102,8 +102,8 @@ class TransformBatch {
     }
   }
 
-  /// Samples at the centres of the voxels `bits`, from number `voxel` of `values_` on.
-  void add_centre_samples(const RowSource& source, const WideMap& map, unsigned bits, int voxel) {
+  /// Samples at the centers of the voxels `bits`, from number `voxel` of `values_` on.
+  void add_center_samples(const RowSource& source, const WideMap& map, unsigned bits, int voxel) {
     if (taps_.count + cell_edge > WideTaps::capacity) read();
     while (bits != 0) {
       const int begin = std::countr_zero(bits), end = begin + std::countr_one(bits >> begin);
@@ -111,7 +111,7 @@ class TransformBatch {
       for (int i = begin; i < end; ++i) {
         runs_[run_count_++] = {voxel++, taps_.count + i - begin, 1};
       }
-      add_centres(shape_, map, nearest_, begin, end, taps_);
+      add_centers(shape_, map, nearest_, begin, end, taps_);
       fetch_ahead(source, taps_.count - 1);
     }
   }

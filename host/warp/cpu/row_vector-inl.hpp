@@ -2,7 +2,7 @@
 /// Samples of a row as vectors: float32 arithmetic, one component. Included once per vector
 /// instruction set.
 ///
-/// A 64-bit lane holds the two neighbours along x of one voxel, loaded together; the blends along y
+/// A 64-bit lane holds the two neighbors along x of one voxel, loaded together; the blends along y
 /// and z process both, in the order of volume_sample.hpp: equal bits.
 #if defined(TETWARP_ROW_VECTOR_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_VECTOR_INL

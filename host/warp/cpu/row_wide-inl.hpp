@@ -28,13 +28,13 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Positions and neighbours of the voxels of row (j, k) of a cell, bit-equal to tap_of().
+/// Positions and neighbors of the voxels of row (j, k) of a cell, bit-equal to tap_of().
 class WideRow {
  public:
   WideRow(const SourceShape& shape, const RowSource& source, bool nearest, int j, int k)
       : map_(shape, source, j, k), nearest_(nearest) {}
 
-  /// Finds the neighbours of voxel i. @returns whether it lies inside the source
+  /// Finds the neighbors of voxel i. @returns whether it lies inside the source
   bool move_to(int i) {
     bool inside = true;
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
@@ -53,8 +53,8 @@ class WideRow {
   }
 
   alignas(32) double fraction[4];
-  alignas(16) std::int32_t voxel[4];  ///< lower neighbour
-  alignas(16) std::int32_t upper[4];  ///< distance to the upper neighbour: 1, at the boundary 0
+  alignas(16) std::int32_t voxel[4];  ///< lower neighbor
+  alignas(16) std::int32_t upper[4];  ///< distance to the upper neighbor: 1, at the boundary 0
 
  private:
   static constexpr WideMap::Tag d{};
@@ -73,7 +73,7 @@ inline void sample_wide(const RasterJob<T>& job,
                         int j,
                         int k,
                         std::int64_t row) {
-  const hn::FixedTag<double, 2> d;  // both neighbours along x
+  const hn::FixedTag<double, 2> d;  // both neighbors along x
   const SourceView<T>& view = job.source;
   const std::ptrdiff_t components = view.components;
   const std::ptrdiff_t up = components * view.dims[0], far = up * view.dims[1];

@@ -62,7 +62,7 @@ struct WideMap {
   alignas(32) double last[4] = {0, 0, 0, 0};  ///< voxel of the source
 };
 
-/// Neighbours of samples along an axis of the source, bit-equal to tap_of(). One sample or one axis
+/// Neighbors of samples along an axis of the source, bit-equal to tap_of(). One sample or one axis
 /// per lane.
 template <class Tag>
 struct WideAxisTaps {
@@ -82,9 +82,9 @@ struct WideAxisTaps {
   }
 
   hn::Mask<Tag> is_inside;
-  hn::Mask<Tag> blends;  ///< the upper neighbour is another voxel than the lower one
-  Numbers fraction;      ///< from the lower neighbour to the upper one
-  Numbers voxel;         ///< lower neighbour
+  hn::Mask<Tag> blends;  ///< the upper neighbor is another voxel than the lower one
+  Numbers fraction;      ///< from the lower neighbor to the upper one
+  Numbers voxel;         ///< lower neighbor
 };
 
 }  // namespace HWY_NAMESPACE

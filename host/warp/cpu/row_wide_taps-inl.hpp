@@ -1,5 +1,5 @@
 /// @file row_wide_taps-inl.hpp
-/// Positions of samples in float64: offsets and weights of their neighbours. Included once per
+/// Positions of samples in float64: offsets and weights of their neighbors. Included once per
 /// vector instruction set.
 #if defined(TETWARP_ROW_WIDE_TAPS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_WIDE_TAPS_INL
@@ -31,10 +31,10 @@ struct WideTaps {
   static constexpr int padded = capacity + 2 * cell_edge;
 
   int count = 0;
-  /// Offset of the lower neighbour [voxel]; in the source for every sample.
+  /// Offset of the lower neighbor [voxel]; in the source for every sample.
   alignas(64) std::int32_t offset[padded];
   alignas(64) std::int32_t is_inside[padded];  ///< 1 where the source is defined, else 0
-  /// From the lower neighbour to the upper one; 0: the upper one is not used and may not exist.
+  /// From the lower neighbor to the upper one; 0: the upper one is not used and may not exist.
   alignas(64) double fraction[3][padded];
 };
 
@@ -43,7 +43,7 @@ struct WidePositions {
   hn::Vec<WideTag> at[3];
 };
 
-/// Stores the neighbours and weights of a vector of samples at place `to`, bit-equal to tap_of().
+/// Stores the neighbors and weights of a vector of samples at place `to`, bit-equal to tap_of().
 HWY_INLINE void store_wide_taps(const SourceShape& shape,
                                 const WideMap& map,
                                 bool nearest,
@@ -69,8 +69,8 @@ HWY_INLINE void store_wide_taps(const SourceShape& shape,
              taps.is_inside + to);
 }
 
-/// Adds the centres of voxels [begin, end) of a row.
-inline void add_centres(const SourceShape& shape,
+/// Adds the centers of voxels [begin, end) of a row.
+inline void add_centers(const SourceShape& shape,
                         const WideMap& map,
                         bool nearest,
                         int begin,
@@ -90,7 +90,7 @@ inline void add_centres(const SourceShape& shape,
   taps.count += end - begin;
 }
 
-/// Middle of part n of p equal parts of a voxel, from the voxel's centre, at [p - 1][n] [voxel].
+/// Middle of part n of p equal parts of a voxel, from the voxel's center, at [p - 1][n] [voxel].
 using PartMiddles = std::array<std::array<double, max_parts>, max_parts>;
 constexpr PartMiddles make_part_middles() {
   PartMiddles middles = {};
@@ -103,7 +103,7 @@ constexpr PartMiddles make_part_middles() {
 }
 inline constexpr PartMiddles part_middles = make_part_middles();
 
-/// Source offsets of successive parts of a voxel from the voxel's centre.
+/// Source offsets of successive parts of a voxel from the voxel's center.
 struct PartOffsets {
   static constexpr int capacity = 64;
 
@@ -139,15 +139,15 @@ inline void add_parts(const SourceShape& shape,
                       WideTaps& taps) {
   const WideTag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  hn::Vec<WideTag> centre[3];
+  hn::Vec<WideTag> center[3];
   for (int axis = 0; axis < 3; ++axis) {
-    centre[axis] = hn::Set(d, map.line[axis] + map.step[axis] * double(i));
+    center[axis] = hn::Set(d, map.line[axis] + map.step[axis] * double(i));
   }
   for (int p = 0; p < parts.count; p += lanes) {
     WidePositions x;
     hn::Vec<WideTag> unused;
     hn::LoadInterleaved4(d, parts.at + 4 * p, x.at[0], x.at[1], x.at[2], unused);
-    for (int axis = 0; axis < 3; ++axis) x.at[axis] = hn::Add(centre[axis], x.at[axis]);
+    for (int axis = 0; axis < 3; ++axis) x.at[axis] = hn::Add(center[axis], x.at[axis]);
     store_wide_taps(shape, map, nearest, x, static_cast<std::size_t>(taps.count + p), taps);
   }
   taps.count += parts.count;

@@ -45,7 +45,7 @@ struct WideRun {
   std::int32_t count;
 };
 
-/// Distances in memory to the upper neighbours along x, y, z [sample].
+/// Distances in memory to the upper neighbors along x, y, z [sample].
 struct UpperSteps {
   std::ptrdiff_t x, y, z;
 };
@@ -123,7 +123,7 @@ inline void add_components(const SourceView<T>& view,
   }
 }
 
-/// Neighbours along x of as many samples as WideTag has lanes, as float64 in adjacent lanes.
+/// Neighbors along x of as many samples as WideTag has lanes, as float64 in adjacent lanes.
 struct WidePairs {
   hn::Vec<WideTag> half[2];
 };
@@ -234,7 +234,7 @@ inline bool meets_end(const SourceView<T>& view, WideTaps& taps) {
     for (auto& fraction : taps.fraction) fraction[s] = 0;
   }
   const std::int64_t line = view.dims[0], slice = line * view.dims[1];
-  // A vector extends up to seven bytes or three samples beyond the upper neighbour.
+  // A vector extends up to seven bytes or three samples beyond the upper neighbor.
   constexpr std::int64_t spare = 8;
   const std::int64_t past = slice * view.dims[2] - (slice + line + 1 + spare);
   std::int32_t last = 0;

@@ -29,7 +29,7 @@ class CellRaster<CudaExec> {
  public:
   template <class T>
   void run(CudaExec& exec,
-           const CellWorkBody<T>& work,
+           const CellWorkOp<T>& work,
            bool has_groups,
            CellListCounts* counts,
            const ProgressPart& progress) {

@@ -35,7 +35,7 @@ constexpr PixelType pixel_type_of() {
   }
 }
 
-/// How the source is interpolated between voxel centres. At a voxel centre every filter returns the
+/// How the source is interpolated between voxel centers. At a voxel center every filter returns the
 /// sample itself. Order p: for smooth images the error falls with the p-th power of the voxel size.
 enum class Filter {
   nearest,  ///< the nearest sample; order 1

@@ -65,7 +65,7 @@ double pull_off_force(int n) {
     force = std::max(force, -simulator.record().bodies[0].contact_force[2]);
   }
   // Beyond the onset the intensity is W / (C g^2).
-  const double gap = simulator.record().bodies[0].centre[2] - 0.05 - 1e-4;
+  const double gap = simulator.record().bodies[0].center[2] - 0.05 - 1e-4;
   EXPECT_NEAR(simulator.record().adhered_area / (0.04 * 2 / (8e4 * gap * gap)), 1, 0.01) << n;
   return force;
 }

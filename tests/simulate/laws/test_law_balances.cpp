@@ -10,7 +10,7 @@
 namespace tetwarp::test {
 namespace {
 
-/// An elastic ball hits another one and a rigid box off their centres, in free flight.
+/// An elastic ball hits another one and a rigid box off their centers, in free flight.
 Scene collision(double friction, double tolerance) {
   Body a = elastic_ball("a", 0.05, 90, {-0.08, 0.01, 0});
   a.velocity = {1, 0, 0.1};
@@ -138,10 +138,10 @@ std::vector<Point3> pile_places(const std::array<std::size_t, 3>& order, int ste
   Scene scene = floor_scene({bodies[order[0]], bodies[order[1]], bodies[order[2]]}, 0.004, 0.3);
   Simulator simulator(scene);
   run(simulator, steps);
-  std::vector<Point3> centres(3);
-  for (std::size_t i = 0; i < 3; ++i) centres[order[i]] = simulator.record().bodies[i].centre;
+  std::vector<Point3> centers(3);
+  for (std::size_t i = 0; i < 3; ++i) centers[order[i]] = simulator.record().bodies[i].center;
   EXPECT_GT(simulator.record().contacts, 4);
-  return centres;
+  return centers;
 }
 
 TEST(Contact, DoesNotDependOnTheOrderOfBodies) {

@@ -11,7 +11,7 @@
 namespace tetwarp::test {
 namespace {
 
-/// A soft and a rigid box that are thrown at each other above a floor, off their centres.
+/// A soft and a rigid box that are thrown at each other above a floor, off their centers.
 Scene clash() {
   Body soft = elastic_box("soft", {0.05, 0.05, 0.05}, {4, 4, 4});
   soft.pose.position = {-0.06, 0, 0.055};

@@ -142,7 +142,7 @@ Body box_above(const Start& start) {
 struct Slide {
   double along = 0;    ///< speed along the floor at the end [m/s]
   double way = 0;      ///< along the floor [m]
-  double height = 0;   ///< of the centre above that of rest, at the end [m]
+  double height = 0;   ///< of the center above that of rest, at the end [m]
   double leaning = 0;  ///< largest part of a step's contact force that is not normal to the floor
   std::int64_t clamped = 0;
 };
@@ -151,7 +151,7 @@ struct Slide {
 Slide slide(const Scene& scene, const Quaternion& tilt, int steps) {
   Simulator simulator(scene);
   const Point3 up = rotate(tilt, {0, 0, 1});
-  const Point3 start = simulator.record().bodies[0].centre;
+  const Point3 start = simulator.record().bodies[0].center;
   Slide result;
   for (int n = 0; n < steps; ++n) {
     simulator.step();
@@ -167,8 +167,8 @@ Slide slide(const Scene& scene, const Quaternion& tilt, int steps) {
   const BodyRecord& end = simulator.record().bodies[0];
   const auto along_floor = [&](const Point3& x) { return norm(minus(x, times(dot(x, up), up))); };
   result.along = along_floor(end.velocity);
-  result.way = along_floor(minus(end.centre, start));
-  result.height = dot(minus(end.centre, start), up);
+  result.way = along_floor(minus(end.center, start));
+  result.height = dot(minus(end.center, start), up);
   return result;
 }
 

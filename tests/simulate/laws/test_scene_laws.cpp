@@ -77,7 +77,7 @@ TEST(SceneLaws, MouthOpensSymmetricallyAndLosesAllBonds) {
     const StepRecord& record = simulator.record();
     bonded = std::max(bonded, record.adhered_area);
     for (std::size_t lip = 0; lip < 2; ++lip) {
-      asymmetry = std::max(asymmetry, std::abs(record.bodies[lip].centre[0]));
+      asymmetry = std::max(asymmetry, std::abs(record.bodies[lip].center[0]));
     }
     EXPECT_GT(record.smallest_distance, 0) << n;
   }

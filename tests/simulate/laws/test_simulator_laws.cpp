@@ -37,7 +37,7 @@ TEST(SpringChain, GapsAreWeightOverStiffness) {
     const double weight = simulator.body(0).mass * 9.81;
     double above = 0;  // how far the body above has sunk
     for (std::size_t i = 0; i < 5; ++i) {
-      const double sunk = -0.2 * static_cast<double>(i) - record.bodies[i].centre[2];
+      const double sunk = -0.2 * static_cast<double>(i) - record.bodies[i].center[2];
       const double expected = static_cast<double>(5 - i) * weight / stiffness;
       EXPECT_NEAR((sunk - above) / expected, 1, 1e-7) << stiffness << " " << i;
       EXPECT_NEAR(record.coupling_forces[i][2] / (static_cast<double>(5 - i) * weight), 1, 1e-7);
@@ -134,7 +134,7 @@ TEST(Simulator, IsOfFirstOrderInTime) {
     body.material = {2e4, 0.3, 1000};
     Simulator simulator(scene_of({body}, dt));
     run(simulator, static_cast<int>(std::lround(0.064 / dt)));
-    return simulator.record().bodies[0].centre[2];
+    return simulator.record().bodies[0].center[2];
   };
   const double exact = 2 * place(0.000125) - place(0.00025);  // extrapolated
   const double order = std::log2((place(0.004) - exact) / (place(0.002) - exact));
@@ -202,7 +202,7 @@ TEST(Simulator, DoesNotDependOnTheOrderOfBodies) {
                            rigid_box("b", {0.1, 0.1, 0.1}, {0.2, 0, 0}),
                            sheet_body("c", {0.4, 0.4}, {3, 3})};
   for (Body& body : bodies) body.collide = false;
-  const auto centres = [&](const std::array<std::size_t, 3>& order) {
+  const auto centers = [&](const std::array<std::size_t, 3>& order) {
     Scene scene = scene_of({bodies[order[0]], bodies[order[1]], bodies[order[2]]}, 0.01);
     scene.couplings = {
         {.a = "a", .b = "b", .select_a = {AllSelection{}}, .within = 0.05, .stiffness = 2e3},
@@ -211,13 +211,13 @@ TEST(Simulator, DoesNotDependOnTheOrderOfBodies) {
     run(simulator, 20);
     std::vector<Point3> result(3);
     for (std::size_t i = 0; i < 3; ++i) {
-      result[order[i]] = simulator.record().bodies[i].centre;
+      result[order[i]] = simulator.record().bodies[i].center;
     }
     return result;
   };
-  const auto expected = centres({0, 1, 2});
+  const auto expected = centers({0, 1, 2});
   for (const auto& order : {std::array<std::size_t, 3>{2, 0, 1}, {1, 2, 0}, {2, 1, 0}}) {
-    const auto found = centres(order);
+    const auto found = centers(order);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(distance_of(found[i], expected[i]), 1e-12);
   }
 }

@@ -40,11 +40,11 @@ TEST(ReferenceHanging, ChainStretchesEverySpringByTheWeightBelowIt) {
     const double weight = 1000 * 0.5 * 0.1 * 0.1 * 0.2 * gravity;
     double above = 0;
     for (std::size_t i = 0; i < 8; ++i) {
-      const double top = record.bodies[i].centre[2] + 0.1;
+      const double top = record.bodies[i].center[2] + 0.1;
       const double gap = above - top, expected = weight * static_cast<double>(8 - i) / stiffness;
-      // Positions are rounded to 1e-16 of a metre.
+      // Positions are rounded to 1e-16 of a meter.
       EXPECT_NEAR(gap, expected, 1e-7 * expected + 1e-15) << stiffness << ' ' << i;
-      above = record.bodies[i].centre[2] - 0.1;
+      above = record.bodies[i].center[2] - 0.1;
     }
   }
 }

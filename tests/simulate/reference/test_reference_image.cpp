@@ -53,7 +53,7 @@ double density_of(double value) {
 
 struct ImageMoments {
   double mass = 0;
-  Vector3d centre = Vector3d::Zero();
+  Vector3d center = Vector3d::Zero();
   Matrix3d inertia = Matrix3d::Zero();
 };
 
@@ -78,23 +78,23 @@ ImageMoments moments_of(const Volume& volume) {
   };
   each([&](double mass, const Vector3d& x) {
     moments.mass += mass;
-    moments.centre += mass * x;
+    moments.center += mass * x;
   });
-  moments.centre /= moments.mass;
+  moments.center /= moments.mass;
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(
       volume.grid.direction.data());
   const Matrix3d box = axes *
                        (Vector3d(4e-3, 4e-3, 5e-3).array().square() / 12).matrix().asDiagonal() *
                        axes.transpose();
   each([&](double mass, const Vector3d& x) {
-    const Vector3d arm = x - moments.centre;
+    const Vector3d arm = x - moments.center;
     const Matrix3d second = arm * arm.transpose() + box;
     moments.inertia += mass * (second.trace() * Matrix3d::Identity() - second);
   });
   return moments;
 }
 
-TEST(ReferenceImage, HasTheMassCentreAndInertiaOfItsVoxels) {
+TEST(ReferenceImage, HasTheMassCenterAndInertiaOfItsVoxels) {
   const Volume volume = noisy_ellipsoid();
   Scene scene = scene_of(1e-3, 1);
   scene.bodies = {image_body(volume)};
@@ -104,12 +104,12 @@ TEST(ReferenceImage, HasTheMassCentreAndInertiaOfItsVoxels) {
 
   double mass = 0;
   for (const double m : bodies.masses(0)) mass += m;
-  const Point3 centre = bodies.record().bodies[0].centre;
+  const Point3 center = bodies.record().bodies[0].center;
   const std::array<double, 9> inertia = bodies.inertia(0);
 
   EXPECT_NEAR(mass, exact.mass, 1e-12 * exact.mass);
   for (int d = 0; d < 3; ++d) {
-    EXPECT_NEAR(centre[static_cast<std::size_t>(d)], exact.centre(d), 1e-12 * 0.08);
+    EXPECT_NEAR(center[static_cast<std::size_t>(d)], exact.center(d), 1e-12 * 0.08);
   }
   for (int i = 0; i < 9; ++i) {
     EXPECT_NEAR(inertia[static_cast<std::size_t>(i)], exact.inertia(i / 3, i % 3),

@@ -153,7 +153,7 @@ TEST(ReferenceOrder, OfBodiesAndNodesDoesNotMatter) {
   }
   EXPECT_LT(largest_distance(a.node_positions(0), kite), 1e-12);
   EXPECT_LT(largest_distance(a.node_positions(1), b.node_positions(2)), 1e-12);
-  EXPECT_LT(largest_distance({a.record().bodies[2].centre}, {b.record().bodies[0].centre}), 1e-12);
+  EXPECT_LT(largest_distance({a.record().bodies[2].center}, {b.record().bodies[0].center}), 1e-12);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST(ContactStress, FrictionMayBeNoneOrAThousand) {
   }
 }
 
-/// A thousand kilometres from the origin, places are rounded to 1e-10 m.
+/// A thousand kilometers from the origin, places are rounded to 1e-10 m.
 TEST(ContactStress, BodiesMayBeFarFromTheOrigin) {
   Scene scene = two_blocks(3e4, 1e5, 0.004, 0.3);
   const Point3 offset{1e6, -1e6, 1e6};
@@ -73,8 +73,8 @@ TEST(ContactStress, BodiesMayBeFarFromTheOrigin) {
   SCOPED_TRACE(testing::Message() << watch);
   expect_sound(watch);
   for (std::size_t b = 0; b < 2; ++b) {
-    const Point3 moved = minus(far.record().bodies[b].centre, offset);
-    EXPECT_LT(distance_of(moved, near.record().bodies[b].centre), 1e-4) << b;
+    const Point3 moved = minus(far.record().bodies[b].center, offset);
+    EXPECT_LT(distance_of(moved, near.record().bodies[b].center), 1e-4) << b;
   }
 }
 

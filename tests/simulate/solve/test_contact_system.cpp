@@ -33,8 +33,8 @@ Point3 difference_velocity(const HandScene& scene,
     if (frame >= 0) {
       own.local = minus(place, model.start.position[at(model.node_count + frame)]);
       const std::size_t linear = at(model.node_count + 2 * frame);
-      Point3& centre = moved.position[at(model.node_count + frame)];
-      centre = plus(centre, times(h, velocity[linear]));
+      Point3& center = moved.position[at(model.node_count + frame)];
+      center = plus(center, times(h, velocity[linear]));
       const Point3 half = times(h / 2, velocity[linear + 1]);
       moved.rotation[at(frame)] = normalized({1, half[0], half[1], half[2]});
     }

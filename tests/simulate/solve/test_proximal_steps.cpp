@@ -134,33 +134,32 @@ class Steps {
     CpuExec exec(1);
     for (int step = 0; step < ProximalState::steps_at_once; ++step) {
       exec.for_each("", static_cast<std::int64_t>(of_.constants.size()),
-                    ProximalStepBody{touching_,
-                                     view(std::as_const(of_.constants)),
-                                     view(std::as_const(of_.majorant)),
-                                     {},
-                                     view(std::as_const(velocity_)),
-                                     &state_,
-                                     step,
-                                     view(ahead_),
-                                     view(impulse_),
-                                     view(past_),
-                                     view(terms_)});
+                    ProximalStepOp{touching_,
+                                   view(std::as_const(of_.constants)),
+                                   view(std::as_const(of_.majorant)),
+                                   {},
+                                   view(std::as_const(velocity_)),
+                                   &state_,
+                                   step,
+                                   view(ahead_),
+                                   view(impulse_),
+                                   view(past_),
+                                   view(terms_)});
       exec.for_each("", touching_.bodies.row_of_node.size,
-                    NodePushBody{touching_, view(std::as_const(ahead_)), view(std::as_const(none_)),
-                                 view(push_)});
-      exec.for_each(
-          "", static_cast<std::int64_t>(velocity_.size()),
-          NodeMoveBody{touching_.bodies, view(std::as_const(push_)), {}, view(velocity_)});
+                    NodePushOp{touching_, view(std::as_const(ahead_)), view(std::as_const(none_)),
+                               view(push_)});
+      exec.for_each("", static_cast<std::int64_t>(velocity_.size()),
+                    NodeMoveOp{touching_.bodies, view(std::as_const(push_)), {}, view(velocity_)});
     }
     state_.sums = {};
     for (const ProximalState::Sums& term : terms_) state_.sums += term;
-    ProximalDecideBody{&state_}(0);
+    ProximalDecideOp{&state_}(0);
     return state_.sums;
   }
   void grow() {
     CpuExec exec(1);
     exec.for_each("", static_cast<std::int64_t>(of_.majorant.size()),
-                  MajorantGrowBody{view(of_.majorant)});
+                  MajorantGrowOp{view(of_.majorant)});
     begin();
   }
 

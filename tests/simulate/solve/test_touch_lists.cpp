@@ -27,7 +27,7 @@ class RandomTouches {
  public:
   explicit RandomTouches(std::int32_t contact_count) {
     list_rows();
-    for (double& x : centre_) x = number();
+    for (double& x : center_) x = number();
     for (std::int32_t body = 0; body < bodies_of_nodes + frames; ++body) {
       for (int v = 0; v < 4; ++v) add_point(body);
     }
@@ -41,7 +41,7 @@ class RandomTouches {
 
   TouchListInput input() const {
     return {view(contacts),
-            {view(points_), view(centre_), node_count},
+            {view(points_), view(center_), node_count},
             view(row_of_block_),
             view(body_of_row)};
   }
@@ -127,7 +127,7 @@ class RandomTouches {
                  double weight,
                  Eigen::MatrixXd& sum,
                  std::set<std::int32_t>& rows) const {
-    const Vector3d centre(&centre_[index_of(3 * frame)]), arm = Vector3d(side.point) - centre;
+    const Vector3d center(&center_[index_of(3 * frame)]), arm = Vector3d(side.point) - center;
     Eigen::Matrix3d turning;  // omega x arm
     turning << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
     const std::int32_t block = node_count + 2 * frame;
@@ -146,7 +146,7 @@ class RandomTouches {
 
   std::mt19937 random_{11};
   std::vector<SurfacePoint> points_;
-  std::vector<double> centre_ = std::vector<double>(3 * frames);
+  std::vector<double> center_ = std::vector<double>(3 * frames);
   std::vector<std::int32_t> row_of_block_;
 };
 
@@ -157,13 +157,13 @@ struct TouchLists {
     const std::int64_t contacts = std::ssize(of.contacts), rows = std::ssize(of.body_of_row);
     std::vector<std::int64_t> sums(index_of(TouchSums::size(contacts, rows)), 0);
     const TouchSums counted = {view(sums), contacts};
-    each(contacts, TouchCountBody{in, counted});
+    each(contacts, TouchCountOp{in, counted});
     std::exclusive_scan(sums.begin(), sums.end(), sums.begin(), std::int64_t{0});
     std::vector<std::int64_t> squares(bodies.size() + 1);
-    each(std::ssize(squares), BodyNodesBody{counted, view(bodies), view(squares)});
+    each(std::ssize(squares), BodyNodesOp{counted, view(bodies), view(squares)});
     std::exclusive_scan(squares.begin(), squares.end(), squares.begin(), std::int64_t{0});
     const View<const std::int64_t> squares_before = view(std::as_const(squares));
-    TouchTotalsBody{counted, rows, squares_before, &totals}(0);
+    TouchTotalsOp{counted, rows, squares_before, &totals}(0);
     for (auto* const list : {&row, &node, &contact, &part, &touch}) {
       list->resize(index_of(totals.blocks));
     }
@@ -174,16 +174,16 @@ struct TouchLists {
     row_of_node.resize(index_of(totals.nodes));
     pair_start.resize(index_of(totals.nodes + 1));
     touch_start.resize(index_of(rows + 1));
-    each(rows + 1, NodeListBody{counted, in.body_of_row, squares_before, view(bodies),
-                                view(row_of_node), view(pair_start)});
+    each(rows + 1, NodeListOp{counted, in.body_of_row, squares_before, view(bodies),
+                              view(row_of_node), view(pair_start)});
     std::vector<KeyValue> touches(row.size());
     each(contacts + 1,
-         TouchListBody{in, counted, view(bodies), view(block_start), view(part_start), view(row),
-                       view(node), view(contact), view(part), view(part_block), view(part_body),
-                       view(jacobian), view(touches)});
+         TouchListOp{in, counted, view(bodies), view(block_start), view(part_start), view(row),
+                     view(node), view(contact), view(part), view(part_block), view(part_body),
+                     view(jacobian), view(touches)});
     std::sort(touches.begin(), touches.end());
     each(std::max(rows + 1, totals.blocks),
-         RowTouchesBody{view(std::as_const(touches)), view(touch_start), view(touch)});
+         RowTouchesOp{view(std::as_const(touches)), view(touch_start), view(touch)});
   }
 
   TouchTotals totals{};
@@ -195,9 +195,9 @@ struct TouchLists {
 
  private:
   /// In reverse: stages have no order.
-  template <class Body>
-  static void each(std::int64_t count, const Body& body) {
-    for (std::int64_t i = count - 1; i >= 0; --i) body(i);
+  template <class Op>
+  static void each(std::int64_t count, const Op& op) {
+    for (std::int64_t i = count - 1; i >= 0; --i) op(i);
   }
 };
 

@@ -24,9 +24,9 @@ View<double> write(Vector& values) {
   return {values.data(), values.size()};
 }
 
-template <class Body>
-void each(std::int64_t count, const Body& body) {
-  CpuExec(1).for_each("", count, body);
+template <class Op>
+void each(std::int64_t count, const Op& op) {
+  CpuExec(1).for_each("", count, op);
 }
 void expect_near(const Vector& found, const Vector& expected, double tolerance = 1e-13) {
   ASSERT_EQ(found.size(), expected.size());
@@ -43,8 +43,8 @@ Vector unset(std::int64_t count) {
 struct Stages {
   explicit Stages(std::int32_t count) : size(count), step(count) {
     each(step.diagonal_rows().size,
-         DiagonalInvertBody{step.diagonal_rows(), {step.system(), step.values(), of.diagonal}});
-    const ComplianceBlockBody fill{of, view(compliance)};
+         DiagonalInvertOp{step.diagonal_rows(), {step.system(), step.values(), of.diagonal}});
+    const ComplianceBlockOp fill{of, view(compliance)};
     for (std::int64_t node = 0; node < nodes; ++node) {
       for (std::int32_t other = 0; other < of.of_node(node).node_count; ++other) {
         fill(node, other, 0);
@@ -76,8 +76,8 @@ TEST(TwoLevelStages, StartIsThatOfTheRowsInTheSystem) {
   at_all_sizes([](Stages& s) {
     const Vector free = s.step.vector(3 * (s.step.system_count() + 1));
     Vector velocity = unset(s.size), weight = velocity, expected = velocity;
-    each(s.size, RowStartBody{s.step.system_row(), s.step.system(), s.step.values(), read(free),
-                              write(velocity), write(weight)});
+    each(s.size, RowStartOp{s.step.system_row(), s.step.system(), s.step.values(), read(free),
+                            write(velocity), write(weight)});
     for (std::int32_t row = 0; row < s.size; ++row) {
       expected.segment<3>(3 * row) = free.segment<3>(3 * s.step.system_row()[row]);
     }
@@ -85,7 +85,7 @@ TEST(TwoLevelStages, StartIsThatOfTheRowsInTheSystem) {
     EXPECT_EQ(weight, Vector(s.step.a.diagonal()));
 
     const Vector more = s.step.vector(3 * s.size);
-    each(3 * s.size, AddNumbersBody{read(more), write(velocity)});
+    each(3 * s.size, AddNumbersOp{read(more), write(velocity)});
     EXPECT_EQ(velocity, expected + more);
   });
 }
@@ -94,12 +94,12 @@ TEST(TwoLevelStages, BodiesMoveByTheirInverses) {
   at_all_sizes([](Stages& s) {
     const Vector push = s.step.vector(3 * s.size), from = s.step.vector(3 * s.size);
     Vector moved = unset(s.size), to = moved;
-    each(3 * s.size, ComplianceBody{s.of, read(push), write(moved)});
-    each(s.size, RowMoveBody{s.of, read(moved), read(from), write(to)});
+    each(3 * s.size, ComplianceOp{s.of, read(push), write(moved)});
+    each(s.size, RowMoveOp{s.of, read(moved), read(from), write(to)});
     expect_near(moved, s.step.inverses * push, 1e-12);
     expect_near(to, from + s.step.rotations * moved);
     Vector in_place = from;
-    each(s.size, RowMoveBody{s.of, read(moved), read(in_place), write(in_place)});
+    each(s.size, RowMoveOp{s.of, read(moved), read(in_place), write(in_place)});
     EXPECT_EQ(in_place, to);
   });
 }
@@ -110,13 +110,13 @@ TEST(TwoLevelStages, NodesMoveByTheInversesOfTheirRows) {
     const Vector expected =
         s.step.picks * Vector(s.step.inverses * Vector(s.step.picks.transpose() * push));
     Vector velocity = unset(s.nodes);
-    each(3 * s.nodes, NodeMoveBody{s.of, read(push), {}, write(velocity)});
+    each(3 * s.nodes, NodeMoveOp{s.of, read(push), {}, write(velocity)});
     expect_near(velocity, expected, 1e-6);
-    each(3 * s.nodes, NodeMoveBody{s.of, read(push), read(from), write(velocity)});
+    each(3 * s.nodes, NodeMoveOp{s.of, read(push), read(from), write(velocity)});
     expect_near(velocity, from + expected, 1e-6);
 
     const Vector of_rows = s.step.vector(3 * s.size);
-    each(s.nodes, NodeVelocityBody{s.of, read(of_rows), write(velocity)});
+    each(s.nodes, NodeVelocityOp{s.of, read(of_rows), write(velocity)});
     expect_near(velocity, s.step.picks * Vector(s.step.rotations.transpose() * of_rows));
   });
 }
@@ -126,8 +126,8 @@ TEST(TwoLevelStages, ContactsPushRowsAndMoveWithThem) {
     const Vector velocity = s.step.vector(3 * s.size), after = s.step.vector(3 * s.size);
     const Vector before = s.step.vector(3 * s.size);
     Vector of_contacts = unset(s.size), push = of_contacts, defect = of_contacts;
-    each(s.size, TouchVelocityBody{s.touching, read(velocity), write(of_contacts)});
-    each(s.size, RowPushBody{s.of, s.touching, read(after), read(before), write(push)});
+    each(s.size, TouchVelocityOp{s.touching, read(velocity), write(of_contacts)});
+    each(s.size, RowPushOp{s.of, s.touching, read(after), read(before), write(push)});
     expect_near(of_contacts, s.step.jacobian * velocity + s.offset);
     const Vector pushed = s.step.jacobian.transpose() * (after - before);
     expect_near(push, s.step.rotations.transpose() * pushed);
@@ -137,8 +137,8 @@ TEST(TwoLevelStages, ContactsPushRowsAndMoveWithThem) {
     for (std::int32_t row = 0; row < s.size; ++row) {
       of_rows.segment<3>(3 * row) = load.segment<3>(3 * s.step.system_row()[row]);
     }
-    each(s.size, RowDefectBody{s.of, s.touching, s.step.system(), s.step.values(), read(load),
-                               read(velocity), read(after), read(before), write(defect)});
+    each(s.size, RowDefectOp{s.of, s.touching, s.step.system(), s.step.values(), read(load),
+                             read(velocity), read(after), read(before), write(defect)});
     expect_near(defect,
                 s.step.rotations.transpose() * Vector(of_rows + pushed - s.step.a * velocity));
   });
@@ -155,11 +155,10 @@ TEST(TwoLevelStages, ErrorsAreScalarProducts) {
       natural += 2 * std::pow(std::min(a[3 * c], b[3 * c] / 2), 2);
     }
     CpuExec exec(1);
-    const auto square =
-        exec.sum<PlainSums<1>>("", 0, 3 * s.size, DefectSquareBody{read(a), read(b)});
+    const auto square = exec.sum<PlainSums<1>>("", 0, 3 * s.size, DefectSquareOp{read(a), read(b)});
     const auto error = exec.sum<PlainSums<2>>(
         "", 0, s.size,
-        TouchErrorBody{view(std::as_const(constants)), {}, read(a), read(b), read(free)});
+        TouchErrorOp{view(std::as_const(constants)), {}, read(a), read(b), read(free)});
     EXPECT_NEAR(square.value[0], a.dot(b), 1e-12 * (1 + s.size));
     EXPECT_NEAR(error.value[0], natural, 1e-12 * (1 + s.size));
     EXPECT_NEAR(error.value[1], a.dot(b - free), 1e-12 * (1 + s.size));
@@ -169,7 +168,7 @@ TEST(TwoLevelStages, ErrorsAreScalarProducts) {
 TEST(TwoLevelStages, JacobiansAreTurnedIntoFrames) {
   at_all_sizes([](Stages& s) {
     std::vector<double> turned(s.step.turned().size());
-    each(s.step.block_count(), TurnJacobianBody{s.of, s.touching, view(turned)});
+    each(s.step.block_count(), TurnJacobianOp{s.of, s.touching, view(turned)});
     for (std::size_t i = 0; i < turned.size(); ++i)
       EXPECT_NEAR(turned[i], s.step.turned()[i], 1e-14);
   });
@@ -183,14 +182,14 @@ TEST(TwoLevelStages, PartsPushNodesAndMoveWithThem) {
     Vector diagonal = s.step.vector(3 * s.step.part_count()).cwiseAbs();
     if (diagonal.size() > 0) diagonal[1] = 0;
     Vector push = unset(s.nodes), vector = unset(s.step.part_count());
-    each(s.nodes, PartPushBody{s.contacts, read(of_parts), write(push)});
+    each(s.nodes, PartPushOp{s.contacts, read(of_parts), write(push)});
     expect_near(push, s.step.picks * Vector(s.step.parts.transpose() * of_parts));
-    each(s.nodes, NodePushBody{s.contacts, read(after), read(before), write(push)});
+    each(s.nodes, NodePushOp{s.contacts, read(after), read(before), write(push)});
     const Vector impulses = s.step.sum_parts.transpose() * (after - before);
     expect_near(push, s.step.picks * Vector(s.step.parts.transpose() * impulses));
 
     each(s.step.part_count(),
-         PartVectorBody{s.contacts, read(velocity), read(diagonal), write(vector)});
+         PartVectorOp{s.contacts, read(velocity), read(diagonal), write(vector)});
     const Vector moved = s.step.parts * Vector(s.step.picks.transpose() * velocity);
     for (Eigen::Index i = 0; i < vector.size(); ++i) {
       EXPECT_NEAR(vector[i] * diagonal[i], diagonal[i] > 0 ? moved[i] : 0, 1e-13);
@@ -203,7 +202,7 @@ TEST(TwoLevelStages, MajorantsAreScaledDiagonals) {
   at_all_sizes([](Stages& s) {
     std::vector<ContactConstants<double>> constants(index_of(s.size)), majorant = constants;
     Vector diagonal = unset(s.step.part_count()), vector = diagonal;
-    each(s.size, OwnBlockBody{s.contacts, view(constants), write(diagonal), write(vector)});
+    each(s.size, OwnBlockOp{s.contacts, view(constants), write(diagonal), write(vector)});
     const RandomStep::Sparse moved = s.step.parts * s.step.inverses;
     for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
       const double expected = moved.row(i).dot(s.step.parts.row(i));
@@ -216,9 +215,9 @@ TEST(TwoLevelStages, MajorantsAreScaledDiagonals) {
       scaled.segment<3>(3 * p) *= scale[s.contacts.part_body[p]];
     }
     const Vector expected = s.step.sum_parts * scaled;
-    each(s.size, MajorantBody{s.contacts, view(std::as_const(constants)), read(diagonal),
-                              read(scale), view(majorant)});
-    each(s.size, MajorantGrowBody{view(majorant)});
+    each(s.size, MajorantOp{s.contacts, view(std::as_const(constants)), read(diagonal), read(scale),
+                            view(majorant)});
+    each(s.size, MajorantGrowOp{view(majorant)});
     const RandomStep::Sparse jacobian = s.step.sum_parts * s.step.parts;
     const RandomStep::Sparse all_moved = jacobian * s.step.inverses;
     for (std::int32_t c = 0; c < s.size; ++c) {
@@ -256,10 +255,9 @@ TEST(TwoLevelStages, ScalesOfBodiesAreEigenvaluesWithinTheirLimits) {
       after.segment(3 * own.first_node, 3 * own.node_count) *= factor;
       expected[b] = own.node_count == 0
                         ? 0
-                        : std::clamp(BodyScaleBody::margin * factor, 1.0, std::max(most, 1.0));
+                        : std::clamp(BodyScaleOp::margin * factor, 1.0, std::max(most, 1.0));
     }
-    each(s.of.bodies.size,
-         BodyScaleBody{s.of, read(push), read(before), read(after), write(scale)});
+    each(s.of.bodies.size, BodyScaleOp{s.of, read(push), read(before), read(after), write(scale)});
     expect_near(scale, expected);
   });
 }

@@ -80,7 +80,7 @@ TEST(Script, CanBeMovedByHand) {
   scene.couplings = {{.a = "box", .b = "jaw", .select_a = {AllSelection{}}, .stiffness = 1e4}};
   Simulator simulator(scene);
   run(simulator, 300);
-  const Point3 before = simulator.record().bodies[1].centre;
+  const Point3 before = simulator.record().bodies[1].center;
   const std::vector<Point3> at_rest = simulator.node_positions(0);
   simulator.move_script("jaw", {0.3, 0.1, 0}, {0, 0, 0});
   EXPECT_EQ(simulator.node_positions(0), at_rest);  // it follows from the next step on
@@ -88,7 +88,7 @@ TEST(Script, CanBeMovedByHand) {
   EXPECT_LT(distance_of(simulator.node_positions(0)[0], plus(at_rest[0], {0.3, 0.1, 0})), 1e-12);
   run(simulator, 600);
 
-  EXPECT_LT(distance_of(simulator.record().bodies[1].centre, plus(before, {0.3, 0.1, 0})), 1e-6);
+  EXPECT_LT(distance_of(simulator.record().bodies[1].center, plus(before, {0.3, 0.1, 0})), 1e-6);
   EXPECT_THROW(simulator.move_script("box", {0, 0, 0}, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(simulator.move_script("jaw", {NAN, 0, 0}, {0, 0, 0}), std::invalid_argument);
 }
@@ -120,14 +120,14 @@ TEST(Handle, FollowsTheHandAndLetsGo) {
   Simulator simulator(scene);
   simulator.move_handle("hand", {0, 0.2, 0});
   run(simulator, 500);
-  EXPECT_LT(distance_of(simulator.record().bodies[0].centre, {0, 0.2, 0}), 1e-6);
+  EXPECT_LT(distance_of(simulator.record().bodies[0].center, {0, 0.2, 0}), 1e-6);
   simulator.release_handle("hand");
   simulator.move_handle("hand", {0, 0.3, 0});
   simulator.release_handle("hand");
   run(simulator, 10);
 
   EXPECT_EQ(simulator.record().bodies[0].handle_force, (Point3{0, 0, 0}));
-  EXPECT_LT(distance_of(simulator.record().bodies[0].centre, {0, 0.2, 0}), 1e-6);
+  EXPECT_LT(distance_of(simulator.record().bodies[0].center, {0, 0.2, 0}), 1e-6);
   EXPECT_THROW(simulator.move_handle("foot", {0, 0, 0}), std::invalid_argument);
 }
 

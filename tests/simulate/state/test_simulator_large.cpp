@@ -24,7 +24,7 @@ TEST(SimulatorLarge, StepsAMillionTetrahedra) {
   EXPECT_TRUE(record.converged);
   EXPECT_EQ(record.inverted, 0);
   EXPECT_NEAR(simulator.body(0).mass, 1000, 1e-9);
-  EXPECT_NEAR(record.bodies[0].centre[2], -9.81e-6 * 3, 3e-7);  // all but the fixed layer falls
+  EXPECT_NEAR(record.bodies[0].center[2], -9.81e-6 * 3, 3e-7);  // all but the fixed layer falls
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   EXPECT_LT(usage.ru_maxrss, 6L << 20);  // [KiB]

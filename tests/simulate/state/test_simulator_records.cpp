@@ -126,7 +126,7 @@ TEST(StepRecord, FreeFlightKeepsMomenta) {
   EXPECT_NEAR(end.bodies[0].angular_momentum[2], 2 * moment, 1e-4 * moment);
   EXPECT_NEAR(start.energy.kinetic, mass * 14 / 2 + 2 * moment, 1e-10 * mass);
   EXPECT_LE(end.energy.kinetic + end.energy.elastic, start.energy.kinetic);
-  EXPECT_NEAR(end.bodies[0].centre[1], 0.2, 1e-9);
+  EXPECT_NEAR(end.bodies[0].center[1], 0.2, 1e-9);
 }
 
 /// The force of a handle on a settled body is its weight.

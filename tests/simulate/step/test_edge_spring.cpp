@@ -21,13 +21,13 @@ Eigen::MatrixXd system_of_sheet(double scale, double time_step) {
   const std::vector<std::uint8_t> moved(model.start.position.size());
   std::vector<EdgePull> pulls(edges.nodes.size());
   std::vector<std::uint8_t> turned(edges.nodes.size());
-  const EdgeSpringBody body{{edges.nodes.data()->data(), 2 * count},
-                            {edges.stiffness.data(), count},
-                            {edges.rest_length.data(), count},
-                            {position.data(), static_cast<std::int64_t>(position.size())},
-                            {moved.data(), static_cast<std::int64_t>(moved.size())},
-                            {pulls.data(), count},
-                            {turned.data(), count}};
+  const EdgeSpringOp body{{edges.nodes.data()->data(), 2 * count},
+                          {edges.stiffness.data(), count},
+                          {edges.rest_length.data(), count},
+                          {position.data(), static_cast<std::int64_t>(position.size())},
+                          {moved.data(), static_cast<std::int64_t>(moved.size())},
+                          {pulls.data(), count},
+                          {turned.data(), count}};
   for (std::int64_t e = 0; e < count; ++e) body(e);
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * model.node_count, 3 * model.node_count);
   for (int n = 0; n < model.node_count; ++n) {

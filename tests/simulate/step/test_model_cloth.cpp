@@ -73,7 +73,7 @@ TEST(SheetCloth, StoresStretchAndShearPerArea) {
   }
 }
 
-/// B c^2 / 2 per area, over the nodes that have neighbours on both sides.
+/// B c^2 / 2 per area, over the nodes that have neighbors on both sides.
 TEST(SheetCloth, StoresBendingPerArea) {
   for (const std::int64_t n : {5, 20}) {
     Body body = sheet_body("cloth", {1, 1}, {n, n});

@@ -71,7 +71,7 @@ double density_of(double value) {
   return 1100 - 200 * (value - 0.6) / 0.4;
 }
 
-/// Mass, centre and second moments of an image's foreground.
+/// Mass, center and second moments of an image's foreground.
 /// @param has_extent  voxels are boxes, not points
 Moments moments_of(const Volume& volume, bool has_extent) {
   Moments image;
@@ -186,7 +186,7 @@ TEST(ImageMass, OfAUniformBlockIsThatOfABox) {
   }
 }
 
-TEST(ImageMass, LumpedKeepsMassAndCentre) {
+TEST(ImageMass, LumpedKeepsMassAndCenter) {
   Body body = image_body();
   const Moments consistent = moments_of(model_of(scene_of({body}, 0.01)));
   body.mass = MassKind::lumped;

@@ -10,7 +10,7 @@ namespace {
 
 using Inertia = std::array<double, 9>;  // row major
 
-/// Inertia about the centre, axes of the geometry.
+/// Inertia about the center, axes of the geometry.
 Inertia inertia_of(const Model& model) {
   const RotationMatrix r = rotation_of(model.rigid.axes[0]);
   Inertia inertia{};
@@ -35,7 +35,7 @@ TEST(RigidMass, OfABoxIsItsClosedForm) {
 
   const double mass = 1000 * 8 * 0.2 * 0.1 * 0.3;
   EXPECT_NEAR(model.rigid.mass[0], mass, 1e-11 * mass);
-  EXPECT_LT(distance_of(model.rigid.centre[0], {5, -7, 2}), 1e-13);
+  EXPECT_LT(distance_of(model.rigid.center[0], {5, -7, 2}), 1e-13);
   const Inertia inertia = inertia_of(model);
   EXPECT_NEAR(inertia[0], mass / 3 * (0.01 + 0.09), 1e-12 * mass);
   EXPECT_NEAR(inertia[4], mass / 3 * (0.04 + 0.09), 1e-12 * mass);
@@ -44,7 +44,7 @@ TEST(RigidMass, OfABoxIsItsClosedForm) {
   EXPECT_NEAR(inertia[5], 0, 1e-12 * mass);
 }
 
-/// A tetrahedron with corners 0, e_x, e_y, e_z: volume 1/6, centre 1/4, moments V (3/80) and V/160.
+/// A tetrahedron with corners 0, e_x, e_y, e_z: volume 1/6, center 1/4, moments V (3/80) and V/160.
 TEST(RigidMass, OfATetrahedronIsItsClosedForm) {
   Body body;
   body.name = "tetrahedron";
@@ -56,7 +56,7 @@ TEST(RigidMass, OfATetrahedronIsItsClosedForm) {
   const Model model = model_of(scene_of({body}, 0.01));
 
   EXPECT_NEAR(model.rigid.mass[0], 1, 1e-14);
-  EXPECT_LT(distance_of(model.rigid.centre[0], {0.25, 0.25, 0.25}), 1e-14);
+  EXPECT_LT(distance_of(model.rigid.center[0], {0.25, 0.25, 0.25}), 1e-14);
   const Inertia inertia = inertia_of(model);
   for (std::size_t i = 0; i < 9; ++i) {
     EXPECT_NEAR(inertia[i], i % 4 == 0 ? 3.0 / 40 : 1.0 / 80, 1e-14);

@@ -87,7 +87,7 @@ TEST(StepperMove, MovesByTheVelocitiesThatItWasGiven) {
     EXPECT_LT(distance(axis_angle_of(state.rotation[0]), times(move_step, velocity[angular])),
               1e-15);
     EXPECT_GT(distance(state.angular_momentum[0], free_state.angular_momentum[0]), 1e-6);
-    // A v - b of the held node, whose neighbour is not the one that was changed by hand.
+    // A v - b of the held node, whose neighbor is not the one that was changed by hand.
     EXPECT_GT(norm(stepper->support_impulses()[0]), 0);
   }
 }

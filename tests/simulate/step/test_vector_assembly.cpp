@@ -49,7 +49,7 @@ class AssemblyScene {
   template <class Run>
   Result result_of(bool skips, const Run& run) const {
     Result result{values_, std::vector<std::uint8_t>(static_cast<std::size_t>(blocks_))};
-    BlockAssembleBody body{};
+    BlockAssembleOp body{};
     body.rows.upper = view(upper_);
     body.rows.tets.blocks = view(tet_list_);
     body.rows.edges.blocks = view(edge_list_);
@@ -136,10 +136,10 @@ void expect_bits_of_single_blocks(const char* name) {
   for (const std::int32_t blocks : {0, 1, 7, 500}) {
     const AssemblyScene scene(blocks);
     for (const bool skips : {false, true}) {
-      const auto single = scene.result_of(skips, [&](const BlockAssembleBody& body) {
+      const auto single = scene.result_of(skips, [&](const BlockAssembleOp& body) {
         for (std::int64_t k = 0; k < blocks; ++k) body(k);
       });
-      const auto vectors = scene.result_of(skips, [&](const BlockAssembleBody& body) {
+      const auto vectors = scene.result_of(skips, [&](const BlockAssembleOp& body) {
         stages->assemble(body, 0, blocks / 2);
         stages->assemble(body, blocks / 2, blocks);
       });

@@ -72,14 +72,14 @@ class TetScene {
     const TetConstants constants{const_view(corner_), const_view(gradient_),
                                  const_view(lambda_), const_view(mu_),
                                  const_view(mu_),     static_cast<std::int64_t>(tets)};
-    const TetForceBody body{constants,
-                            const_view(position_),
-                            const_view(moved_),
-                            true,
-                            view(result.turned),
-                            view(result.force),
-                            view(result.has_turned),
-                            view(result.is_skipped)};
+    const TetForceOp body{constants,
+                          const_view(position_),
+                          const_view(moved_),
+                          true,
+                          view(result.turned),
+                          view(result.force),
+                          view(result.has_turned),
+                          view(result.is_skipped)};
     run(body);
     return result;
   }
@@ -100,12 +100,12 @@ class TetScene {
 TEST(VectorStages, ForcesHaveTheBitsOfSingleTetrahedra) {
   for (const int count : {0, 1, 3, 8, 31, 1025}) {
     TetScene scene(count);
-    const auto single = scene.result_of([&](const TetForceBody& body) {
+    const auto single = scene.result_of([&](const TetForceOp& body) {
       for (std::int64_t t = 0; t < count; ++t) body(t);
     });
     for (const VectorStages* stages : usable_stages()) {
       const auto vectors =
-          scene.result_of([&](const TetForceBody& body) { stages->tet_forces(body, 0, count); });
+          scene.result_of([&](const TetForceOp& body) { stages->tet_forces(body, 0, count); });
 
       EXPECT_TRUE(vectors == single) << stages->name << " " << count;
     }
@@ -180,7 +180,7 @@ void expect_equal_products() {
   a.p = view(p);
   a.q = view(q);
   double sum = 0;
-  for (std::int64_t row = 0; row < rows; ++row) sum += IslandProductBody<T>{a}(row).value[0];
+  for (std::int64_t row = 0; row < rows; ++row) sum += IslandProductOp<T>{a}(row).value[0];
   a.q = view(other);
   for (const VectorStages* stages : usable_stages()) {
     double vectors = 0;

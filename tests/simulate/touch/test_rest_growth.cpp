@@ -24,7 +24,7 @@ class GrowingBody {
     scene_.gravity = {0, 0, 0};
     const ShrunkBody shrunk{0, full_[5], scale};
     for (std::size_t n = 0; n < full_.size(); ++n) {
-      model_.start.position[n] = plus(shrunk.centre, times(scale, minus(full_[n], shrunk.centre)));
+      model_.start.position[n] = plus(shrunk.center, times(scale, minus(full_[n], shrunk.center)));
     }
     growth_ = RestGrowth(geometry_, model_, full_, {shrunk});
     state_ = model_.start;

@@ -115,7 +115,7 @@ TEST(StartPush, BodiesAtTheThicknessStayWhereTheyAre) {
   }
 }
 
-/// Of two free bodies the common centre of mass stays; a stack is lifted one by one.
+/// Of two free bodies the common center of mass stays; a stack is lifted one by one.
 TEST(StartPush, BodiesGiveWayByTheirMasses) {
   Scene scene = thick({rigid_box("light", {0.1, 0.1, 0.1}, {0, 0, 0}),
                        rigid_box("heavy", {0.1, 0.1, 0.1}, {0.2, 0, 0})});
@@ -263,7 +263,7 @@ TEST(StartPush, ABodyWithoutRoomStarts) {
   scene.obstacles[1] = {"right", PlaneObstacle{{-1, 0, 0}, {0.1, 0, 0}}, {}, {}};
   Simulator simulator(scene);
   for (int n = 0; n < 5; ++n) ASSERT_TRUE(simulator.step());
-  EXPECT_NEAR(simulator.record().bodies[0].centre[0], 0, 1e-9);
+  EXPECT_NEAR(simulator.record().bodies[0].center[0], 0, 1e-9);
 }
 
 }  // namespace

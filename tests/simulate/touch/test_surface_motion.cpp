@@ -26,8 +26,8 @@ ModelState moved_state(const Model& model,
   }
   for (std::size_t r = 0; r < state.rotation.size(); ++r) {
     const std::size_t block = static_cast<std::size_t>(model.node_count) + 2 * r;
-    const std::size_t centre = static_cast<std::size_t>(model.node_count) + r;
-    moved.position[centre] = plus(state.position[centre], times(seconds, velocity[block]));
+    const std::size_t center = static_cast<std::size_t>(model.node_count) + r;
+    moved.position[center] = plus(state.position[center], times(seconds, velocity[block]));
     moved.rotation[r] =
         product(quaternion_of(times(seconds, velocity[block + 1])), state.rotation[r]);
   }
@@ -144,7 +144,7 @@ TEST(SurfaceMotion, TurningVerticesStayWithinTheSagitta) {
   }
 }
 
-/// A sphere that turns about its centre does not move; a capsule that turns about its axis neither.
+/// A sphere that turns about its center does not move; a capsule that turns about its axis neither.
 TEST(SurfaceMotion, OnTheAxisTheSagittaIsZero) {
   const TouchScene touch(moving_scene());
   std::vector<Point3> velocity(static_cast<std::size_t>(touch.model.block_count()), {0, 0, 0});
@@ -217,7 +217,7 @@ TEST(MovingObstacles, HaveFramesOnAllBackEnds) {
     simulator.step();
     simulator.step();
     // After two steps of backward Euler: 9 - g dt^2 (1 + 2)
-    EXPECT_NEAR(simulator.record().bodies[0].centre[2], 9 - 9.81 * 3e-4, 1e-12);
+    EXPECT_NEAR(simulator.record().bodies[0].center[2], 9 - 9.81 * 3e-4, 1e-12);
   }
 }
 

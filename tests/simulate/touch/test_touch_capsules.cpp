@@ -24,19 +24,19 @@ Obstacle bar_at(const std::string& name, double y, double z, double radius) {
 
 struct Rest {
   double turn = 0;  ///< largest angular velocity [rad/s]
-  double drop = 0;  ///< of the centre, at the end [m]
+  double drop = 0;  ///< of the center, at the end [m]
   std::int64_t contacts = 0;
 };
 
 Rest rest_of(const Scene& scene, int steps) {
   Simulator simulator(scene);
-  const double start = simulator.record().bodies[0].centre[2];
+  const double start = simulator.record().bodies[0].center[2];
   Rest rest;
   for (int n = 0; n < steps; ++n) {
     simulator.step();
     rest.turn = std::max(rest.turn, norm(simulator.record().bodies[0].angular_velocity));
   }
-  rest.drop = start - simulator.record().bodies[0].centre[2];
+  rest.drop = start - simulator.record().bodies[0].center[2];
   rest.contacts = simulator.record().contacts;
   return rest;
 }
@@ -113,7 +113,7 @@ TEST(Boxes, LieOnParallelEdges) {
   EXPECT_NEAR(rest.drop, 1e-6, 1e-7);
 }
 
-/// They hit off their centres and turn as they slide: a contact along the normal at the first hit
+/// They hit off their centers and turn as they slide: a contact along the normal at the first hit
 /// does not keep them apart. They must go on, not be held up: the way is that of the velocities.
 TEST(Capsules, ACapsuleAndABallSlidePastEachOther) {
   Body capsule = rigid_capsule("capsule", 0.02, 0.1, {-0.006, -0.013, 0.013});
@@ -141,7 +141,7 @@ TEST(Capsules, ACapsuleAndABallSlidePastEachOther) {
   EXPECT_LT(norm(end.momentum), norm(start.momentum) + 1e-9);
   EXPECT_LE(held_steps, 5);
   for (std::size_t b = 0; b < 2; ++b) {
-    const Point3 moved = minus(end.bodies[b].centre, start.bodies[b].centre);
+    const Point3 moved = minus(end.bodies[b].center, start.bodies[b].center);
     EXPECT_LT(norm(minus(moved, way[b])), 0.05 * norm(way[b])) << b;
   }
 }

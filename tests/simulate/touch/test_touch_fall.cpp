@@ -24,7 +24,7 @@ TEST(Falling, RigidSphereRestsAtTheThickness) {
   run(simulator, 100);
   const StepRecord& record = simulator.record();
 
-  EXPECT_NEAR(record.bodies[0].centre[2], 0.05 + 1e-4, 1e-9);
+  EXPECT_NEAR(record.bodies[0].center[2], 0.05 + 1e-4, 1e-9);
   EXPECT_NEAR(record.smallest_distance, 1e-4, 1e-9);
   EXPECT_LE(norm(record.bodies[0].velocity), 1e-9);
   EXPECT_EQ(record.contacts, 1);
@@ -47,7 +47,7 @@ TEST(Falling, ABoxWhoseSupportIsPulledAwayIsStopped) {
     EXPECT_GT(lowest(simulator.surface_positions(0)), 0) << n;
     EXPECT_GT(simulator.record().smallest_distance, 0) << n;
   }
-  EXPECT_NEAR(simulator.record().bodies[0].centre[2], 0.05 + 1e-5, 1e-6);
+  EXPECT_NEAR(simulator.record().bodies[0].center[2], 0.05 + 1e-5, 1e-6);
 }
 
 TEST(Falling, RigidBoxRestsAtTheThickness) {
@@ -55,7 +55,7 @@ TEST(Falling, RigidBoxRestsAtTheThickness) {
   run(simulator, 100);
   const StepRecord& record = simulator.record();
 
-  EXPECT_NEAR(record.bodies[0].centre[2], 0.03 + 1e-4, 1e-7);
+  EXPECT_NEAR(record.bodies[0].center[2], 0.03 + 1e-4, 1e-7);
   EXPECT_NEAR(record.bodies[0].contact_force[2], 9.81 * simulator.body(0).mass,
               1e-4 * 9.81 * simulator.body(0).mass);
   EXPECT_LE(norm(record.bodies[0].velocity), 1e-5);
@@ -108,10 +108,10 @@ TEST(Falling, ClothRestsOnAPlane) {
   run(simulator, 60);
 
   EXPECT_GE(lowest(simulator.surface_positions(0)), 0.9e-4);
-  EXPECT_NEAR(simulator.record().bodies[0].centre[2], 1e-4, 1e-5);
+  EXPECT_NEAR(simulator.record().bodies[0].center[2], 1e-4, 1e-5);
 }
 
-/// Two spheres without friction: the impulse along the line of centres, the tangential velocity
+/// Two spheres without friction: the impulse along the line of centers, the tangential velocity
 /// stays, and no momentum is lost.
 TEST(Collisions, OfSpheresKeepMomentum) {
   Body first = rigid_ball("first", 0.05, {0, 0, 0});
@@ -163,7 +163,7 @@ TEST(Stacks, OfBoxesCarryTheirWeights) {
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(record.bodies[k].contact_force[2], weight, 1e-4 * weight);
     const double height = 0.05 + 1e-4 + (0.1 + 1e-4) * static_cast<double>(k);
-    EXPECT_NEAR(record.bodies[k].centre[2], height, 1e-6);
+    EXPECT_NEAR(record.bodies[k].center[2], height, 1e-6);
   }
   EXPECT_EQ(record.islands, 1);
 }

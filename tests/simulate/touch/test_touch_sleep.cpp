@@ -72,7 +72,7 @@ TEST(Sleep, AStackSleepsUntilABallHitsIt) {
   run(awake, 40);
   run(asleep, 40);
   EXPECT_EQ(asleep.record().sleeping, 1);
-  EXPECT_GT(distance_of(asleep.record().bodies[2].centre, before_step.bodies[2].centre), 5e-3);
+  EXPECT_GT(distance_of(asleep.record().bodies[2].center, before_step.bodies[2].center), 5e-3);
   for (std::size_t b = 0; b < 4; ++b) {
     EXPECT_LE(largest_distance(awake.surface_positions(b), asleep.surface_positions(b)), 1e-3) << b;
   }
@@ -146,10 +146,10 @@ TEST(Sleep, EndsWhenTheSupportMoves) {
   Simulator simulator(scene);
   run(simulator, 238);
   ASSERT_EQ(simulator.record().sleeping, 1);
-  const double height = simulator.record().bodies[0].centre[2];
+  const double height = simulator.record().bodies[0].center[2];
   run(simulator, 22);
   EXPECT_EQ(simulator.record().sleeping, 0);
-  EXPECT_LT(simulator.record().bodies[0].centre[2], height - 0.03);
+  EXPECT_LT(simulator.record().bodies[0].center[2], height - 0.03);
 }
 
 /// Bodies without contact: a beam that hangs still wakes with a load, with its handle, and with

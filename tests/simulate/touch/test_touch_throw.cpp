@@ -66,7 +66,7 @@ TEST(Squeezing, OfARigidBodyHoldsThePaths) {
   }
   EXPECT_GT(stalled, 5);
   EXPECT_GE(lowest(simulator.surface_positions(0)), 0);
-  EXPECT_GE(simulator.record().bodies[1].centre[2], 0.105);
+  EXPECT_GE(simulator.record().bodies[1].center[2], 0.105);
 }
 
 /// However a box lies between walls that close, contact does not throw it.
@@ -106,9 +106,9 @@ TEST(Obstacles, PushBodies) {
   }
   const StepRecord& record = simulator.record();
 
-  EXPECT_GE(record.bodies[0].centre[0], 0.55);
+  EXPECT_GE(record.bodies[0].center[0], 0.55);
   EXPECT_GE(record.bodies[0].velocity[0], 0.9);
-  EXPECT_GT(record.bodies[1].centre[0], 0.6);
+  EXPECT_GT(record.bodies[1].center[0], 0.6);
   EXPECT_GT(record.energy.work, 0);
 }
 

@@ -23,7 +23,7 @@ void ContactConstantsList::set(const ContactProblem& laws) {
   input.tangential_stiffness = view_of(adhesion.tangential_stiffness);
   input.intensity = view_of(adhesion.intensity);
   input.gap = view_of(adhesion.gap);
-  const ContactConstantsBody body{
+  const ContactConstantsOp body{
       input, view_of(slots_), {}, {constants.data(), static_cast<std::int64_t>(count)}};
   preload.resize(count);
   for (std::size_t c = 0; c < count; ++c) {

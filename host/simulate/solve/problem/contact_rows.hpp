@@ -18,7 +18,7 @@ struct ContactRows {
   std::vector<std::array<double, 9>> value;  ///< [entries] row k: velocity along axis k of the
                                              ///< contact per velocity of the block
 
-  // The input of the numbers; see ContactRowsBody.
+  // The input of the numbers; see ContactRowsOp.
   std::vector<double> axes;             ///< [contacts][9]
   std::vector<std::int32_t> arm_start;  ///< [contacts + 1]
   std::vector<ContactArm> arms;         ///< of nodes and frames, in the order of the blocks

@@ -15,7 +15,7 @@ namespace tetwarp {
 /// Frame of the model of each body and obstacle that has one, else -1.
 std::vector<std::int32_t> frames_of_bodies(const SceneSurfaces& scene, const Model& model);
 
-/// A point x of a rigid body moves with v + omega x (x - centre), a point of a deformable body with
+/// A point x of a rigid body moves with v + omega x (x - center), a point of a deformable body with
 /// the weighted mean of up to 12 nodes.
 /// @param frames   of frames_of_bodies()
 /// @param threads  any number: same sides

@@ -22,9 +22,9 @@ View<double> view_in(std::vector<double>& values) {
   return {values.data(), static_cast<std::int64_t>(values.size())};
 }
 
-template <class Body>
-void for_each(std::size_t count, const Body& body) {
-  for (std::size_t i = 0; i < count; ++i) body(static_cast<std::int64_t>(i));
+template <class Op>
+void for_each(std::size_t count, const Op& op) {
+  for (std::size_t i = 0; i < count; ++i) op(static_cast<std::int64_t>(i));
 }
 
 }  // namespace
@@ -149,13 +149,13 @@ void StepProblem::set_numbers(const StepSystem& system) {
   problem_.system.value.resize(problem_.system.column.size());
   problem_.jacobian.value.resize(problem_.jacobian.column.size());
   problem_.load.resize(3 * places_.rows.size());
-  for_each(places_.blocks.size(), SystemGatherBody{view_in(places_.blocks), system.values,
-                                                   view_in(problem_.system.value)});
+  for_each(places_.blocks.size(),
+           SystemGatherOp{view_in(places_.blocks), system.values, view_in(problem_.system.value)});
   for_each(places_.rows.size(),
-           GatherThreeBody{view_in(places_.rows), system.load, view_in(problem_.load)});
+           GatherThreeOp{view_in(places_.rows), system.load, view_in(problem_.load)});
   for_each(places_.arms.size(),
-           ContactRowsBody{view_in(arms_.axes), view_in(arms_.arms), view_in(places_.arms),
-                           view_in(problem_.jacobian.value)});
+           ContactRowsOp{view_in(arms_.axes), view_in(arms_.arms), view_in(places_.arms),
+                         view_in(problem_.jacobian.value)});
 }
 
 void StepProblem::set_sample() {
@@ -173,9 +173,9 @@ void StepProblem::set_sample() {
 void StepProblem::scatter(std::span<const double> dofs, std::vector<Point3>& velocity) const {
   for_each(
       places_.model_block.size(),
-      ScatterThreeBody{view_in(places_.model_block),
-                       {dofs.data(), static_cast<std::int64_t>(dofs.size())},
-                       {velocity.data()->data(), static_cast<std::int64_t>(3 * velocity.size())}});
+      ScatterThreeOp{view_in(places_.model_block),
+                     {dofs.data(), static_cast<std::int64_t>(dofs.size())},
+                     {velocity.data()->data(), static_cast<std::int64_t>(3 * velocity.size())}});
 }
 
 }  // namespace tetwarp

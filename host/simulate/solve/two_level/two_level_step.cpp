@@ -47,7 +47,7 @@ void TwoLevelStep::set(const StepSystem& system,
                {inverse_.data(), static_cast<std::int64_t>(inverse_.size())}};
   for (auto* values : {&product_, &pull_, &moved_}) values->resize(3 * index_of(all.count));
   weights.assign(3 * index_of(all.count), 0.0);
-  const RowInvertBody<double> invert{all, system.values, diagonal_};
+  const RowInvertOp<double> invert{all, system.values, diagonal_};
   parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
     const Chunk& chunk = chunks_[index_of(c)];
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {

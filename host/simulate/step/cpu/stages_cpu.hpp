@@ -12,19 +12,19 @@
 
 namespace tetwarp {
 
-inline void tet_forces(CpuExec& exec, const char* label, const TetForceBody& body) {
+inline void tet_forces(CpuExec& exec, const char* label, const TetForceOp& body) {
   exec.for_ranges(label, body.tets.count, [&](std::int64_t begin, std::int64_t end) {
     vector_stages().tet_forces(body, begin, end);
   });
 }
 
-inline void block_assemble(CpuExec& exec, const char* label, const BlockAssembleBody& body) {
+inline void block_assemble(CpuExec& exec, const char* label, const BlockAssembleOp& body) {
   exec.for_ranges(label, body.rows.upper.size, [&](std::int64_t begin, std::int64_t end) {
     vector_stages().assemble(body, begin, end);
   });
 }
 
-/// IslandProductBody of a run of rows.
+/// IslandProductOp of a run of rows.
 template <class T>
 struct VectorProductBody {
   GradientArrays<T> a;

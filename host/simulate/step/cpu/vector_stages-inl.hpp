@@ -26,7 +26,7 @@ inline void lane_rotations(const Lanes<width>* f, int count, Lanes<width>* r) {
 
 /// Tetrahedra index[0] to index[count - 1], count <= width; lanes from count on repeat the last.
 template <int width>
-inline void tet_force_lanes(const TetForceBody& body, const std::int32_t* index, int count) {
+inline void tet_force_lanes(const TetForceOp& body, const std::int32_t* index, int count) {
   using Real = Lanes<width>;
   const TetConstants& tets = body.tets;
   Real x[12], g[9], f[9], r[9], gradient[12], force[12], lambda, mu;
@@ -61,7 +61,7 @@ inline void tet_force_lanes(const TetForceBody& body, const std::int32_t* index,
 }
 
 template <int width>
-void tet_forces_of(const TetForceBody& body, std::int64_t begin, std::int64_t end) {
+void tet_forces_of(const TetForceOp& body, std::int64_t begin, std::int64_t end) {
   std::int32_t index[width];
   int count = 0;
   for (std::int64_t t = begin; t < end; ++t) {
@@ -119,14 +119,14 @@ TetSums tet_energies_of(const TetShapes& tets, std::int64_t begin, std::int64_t 
 }
 
 template <int width>
-void assemble_of(const BlockAssembleBody& body, std::int64_t begin, std::int64_t end) {
-  const BlockAssembleBodyOf<LaneColumn> own{body.rows,   body.from,      body.scalars,
-                                            body.rigid,  body.time_step, body.skips,
-                                            body.values, body.is_skipped};
+void assemble_of(const BlockAssembleOp& body, std::int64_t begin, std::int64_t end) {
+  const BlockAssembleOpOf<LaneColumn> own{body.rows,   body.from,      body.scalars,
+                                          body.rigid,  body.time_step, body.skips,
+                                          body.values, body.is_skipped};
   for (std::int64_t k = begin; k < end; ++k) own(k);
 }
 
-/// IslandProductBody of rows [begin, end) with a block's column in a vector. Reads one number
+/// IslandProductOp of rows [begin, end) with a block's column in a vector. Reads one number
 /// beyond the last block.
 template <int width, class T>
 PlainSums<1> product_of(const GradientArrays<T>& a, std::int64_t begin, std::int64_t end) {

@@ -1,5 +1,5 @@
 /// @file impulse_segments.cuh
-/// ImpulseSegments: which terms of StepImpulseBody are summed together.
+/// ImpulseSegments: which terms of StepImpulseOp are summed together.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 
-/// The terms of StepImpulseBody in segments: bodies, then obstacles, then groups of springs.
+/// The terms of StepImpulseOp in segments: bodies, then obstacles, then groups of springs.
 class ImpulseSegments {
  public:
   explicit ImpulseSegments(const Model& model);

@@ -61,15 +61,15 @@ class CudaResidentContacts final : public ResidentContacts {
     }
     const std::int64_t arm_count = count_of(contacts.arms);
     exec_.for_each(label, arm_count,
-                   ContactRowsBody{{axes.data(), static_cast<std::int64_t>(axes.size())},
-                                   {reinterpret_cast<const ContactArm*>(arms.data()), arm_count},
-                                   view(arm_places_),
-                                   jacobian_.view()});
+                   ContactRowsOp{{axes.data(), static_cast<std::int64_t>(axes.size())},
+                                 {reinterpret_cast<const ContactArm*>(arms.data()), arm_count},
+                                 view(arm_places_),
+                                 jacobian_.view()});
     const StepArrays<CudaExec>& now = pipeline_.arrays();
     exec_.for_each(label, view(blocks_).size,
-                   SystemGatherBody{view(blocks_), view(now.values), system_.view()});
+                   SystemGatherOp{view(blocks_), view(now.values), system_.view()});
     exec_.for_each(label, view(rows_).size,
-                   GatherThreeBody{view(rows_), view(now.load), load_.view()});
+                   GatherThreeOp{view(rows_), view(now.load), load_.view()});
     contact_numbers_ = 3 * count_of(laws.friction);
     results_.resize(2 * contact_numbers_ + view(load_).size);
     of.system = span_of(view(system_));
@@ -96,8 +96,8 @@ class CudaResidentContacts final : public ResidentContacts {
   void set_velocities() override {
     const DeviceScope scope = exec_.enter();
     exec_.for_each(label, view(model_block_).size,
-                   ScatterThreeBody{view(model_block_), body_velocity(view(results_)),
-                                    pipeline_.arrays().velocity.view()});
+                   ScatterThreeOp{view(model_block_), body_velocity(view(results_)),
+                                  pipeline_.arrays().velocity.view()});
   }
 
  private:

@@ -47,11 +47,11 @@ class CudaResidentState final : public ResidentState {
 
   StateCheck check() override {
     const DeviceScope scope = exec_.enter();
-    const StateCheckBody body = {view(now_.position),
-                                 view(now_.velocity),
-                                 {view(now_.centre), view(now_.rotation)},
-                                 view(now_.angular_momentum),
-                                 constants_.moments};
+    const StateCheckOp body = {view(now_.position),
+                               view(now_.velocity),
+                               {view(now_.center), view(now_.rotation)},
+                               view(now_.angular_momentum),
+                               constants_.moments};
     exec_.sum_to(label, 0, terms(), body, check_.view().data);
     StateCheck* const result = host_check_.view(1).data;
     exec_.get(view(check_), result);
@@ -62,7 +62,7 @@ class CudaResidentState final : public ResidentState {
     const std::int64_t count = count_of(segments_.segments);
     if (count == 0) return;
     const DeviceScope scope = exec_.enter();
-    const StepImpulseBody body = {
+    const StepImpulseOp body = {
         model_.node_count,  model_.rigid_count,     view(now_.support),
         view(now_.force),   view(now_.velocity),    input.time_step,
         constants_.springs, view(now_.spring_pull), view(now_.anchor_velocity)};
@@ -85,11 +85,11 @@ class CudaResidentState final : public ResidentState {
     if (watched_.empty()) return;
     const DeviceScope scope = exec_.enter();
     exec_.for_each(label, count_of(watched_.nodes) + count_of(watched_.rigid),
-                   PlaceCopyBody{view(watched_nodes_),
-                                 view(watched_rigid_),
-                                 view(now_.position),
-                                 {view(now_.centre), view(now_.rotation)},
-                                 places_.view()});
+                   PlaceCopyOp{view(watched_nodes_),
+                               view(watched_rigid_),
+                               view(now_.position),
+                               {view(now_.center), view(now_.rotation)},
+                               places_.view()});
     exec_.get(view(places_), host_places_.data());
     const double* from = host_places_.data();
     for (const std::int32_t n : watched_.nodes) {
@@ -115,7 +115,7 @@ class CudaResidentState final : public ResidentState {
   template <class Visit>
   void for_each_part(const Visit& visit) {
     visit(now_.position, position_);
-    visit(now_.centre, centre_);
+    visit(now_.center, center_);
     visit(now_.rotation, rotation_);
     visit(now_.velocity, velocity_);
     visit(now_.angular_momentum, angular_momentum_);
@@ -171,7 +171,7 @@ class CudaResidentState final : public ResidentState {
   DeviceVector<std::int32_t> watched_nodes_, watched_rigid_;
   DeviceVector<double> places_;
   std::vector<double> host_places_;
-  DeviceVector<double> position_, centre_, rotation_, velocity_, angular_momentum_;  ///< saved
+  DeviceVector<double> position_, center_, rotation_, velocity_, angular_momentum_;  ///< saved
 };
 
 }  // namespace tetwarp

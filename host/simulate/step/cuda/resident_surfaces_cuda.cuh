@@ -23,8 +23,8 @@ class CudaResidentSurfaces final : public ResidentSurfaces {
     const DeviceScope scope = exec_.enter();
     points(surfaces);
     exec_.for_each(label, count(),
-                   SurfaceStartBody{view(points_), view(plane_local_), view(plane_rigid_), state(),
-                                    start_.view(), plane_start_.view()});
+                   SurfaceStartOp{view(points_), view(plane_local_), view(plane_rigid_), state(),
+                                  start_.view(), plane_start_.view()});
   }
 
   /// What the vertices are bound to, in memory of the device.
@@ -48,11 +48,11 @@ class CudaResidentSurfaces final : public ResidentSurfaces {
       by.fraction = view(fraction_);
     }
     exec_.for_each(label, view(body_rigid_).size,
-                   FrameMoveBody{view(body_rigid_), state(), by, moved_.view(), frames_.view()});
-    exec_.for_each(label, count(),
-                   SurfaceMoveBody{view(points_), view(plane_local_), view(plane_body_), state(),
-                                   by, view(moved_), view(start_), end_.view(), sagitta_.view(),
-                                   plane_end_.view()});
+                   FrameMoveOp{view(body_rigid_), state(), by, moved_.view(), frames_.view()});
+    exec_.for_each(
+        label, count(),
+        SurfaceMoveOp{view(points_), view(plane_local_), view(plane_body_), state(), by,
+                      view(moved_), view(start_), end_.view(), sagitta_.view(), plane_end_.view()});
     exec_.wait();  // whoever reads them does so on a stream of its own
     return {view(start_),       view(end_),       view(sagitta_),
             view(plane_start_), view(plane_end_), view(frames_)};
@@ -67,7 +67,7 @@ class CudaResidentSurfaces final : public ResidentSurfaces {
   }
   std::int64_t count() const { return view(points_).size + view(plane_body_).size; }
   SurfaceState state() const {
-    return {view(now_.position), view(now_.centre), view(now_.rotation)};
+    return {view(now_.position), view(now_.center), view(now_.rotation)};
   }
   template <class T>
   void put(std::span<const T> host, DeviceVector<T>& own) {

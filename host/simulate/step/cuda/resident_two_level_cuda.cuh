@@ -50,8 +50,8 @@ class CudaResidentTwoLevel final : public ResidentTwoLevel {
   void set_velocities() override {
     const DeviceScope scope = exec_.enter();
     exec_.for_each("body/contact", iteration_.model_block().size,
-                   ScatterThreeBody{iteration_.model_block(), iteration_.row_velocities(),
-                                    pipeline_.arrays().velocity.view()});
+                   ScatterThreeOp{iteration_.model_block(), iteration_.row_velocities(),
+                                  pipeline_.arrays().velocity.view()});
   }
 
  private:

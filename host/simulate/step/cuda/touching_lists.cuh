@@ -17,7 +17,7 @@ namespace tetwarp {
 /// Where contacts are on surfaces, in memory of the device.
 struct SurfacesOnDevice {
   View<const SurfacePoint> points;  ///< [vertices]
-  View<const double> centre;        ///< of frames, [frames][3]
+  View<const double> center;        ///< of frames, [frames][3]
   std::int32_t node_count;          ///< of the model
 };
 
@@ -39,7 +39,7 @@ class TouchingLists {
   /// Makes the lists of contacts on these bodies.
   void make(CudaExec& exec, const SurfacesOnDevice& surfaces, View<const ContactSides> contacts) {
     const TouchListInput in = {contacts,
-                               {surfaces.points, surfaces.centre, surfaces.node_count},
+                               {surfaces.points, surfaces.center, surfaces.node_count},
                                row_of_block_,
                                body_of_row_};
     const std::int64_t rows = body_of_row_.size;
@@ -48,27 +48,27 @@ class TouchingLists {
     squares_.resize(bodies.size + 1);
     totals_.resize(1);
     const TouchSums counted = {sums_.view(), contacts.size};
-    exec.for_each(label, contacts.size, TouchCountBody{in, counted});
+    exec.for_each(label, contacts.size, TouchCountOp{in, counted});
     exec.exclusive_scan(label, sums_.view());
-    exec.for_each(label, bodies.size + 1, BodyNodesBody{counted, bodies, squares_.view()});
+    exec.for_each(label, bodies.size + 1, BodyNodesOp{counted, bodies, squares_.view()});
     exec.exclusive_scan(label, squares_.view());
-    exec.once(label, TouchTotalsBody{counted, rows, const_view(squares_), totals_.view().data});
+    exec.once(label, TouchTotalsOp{counted, rows, const_view(squares_), totals_.view().data});
     const TouchTotals totals = exec.load(totals_.view().data);
     node_pairs_ = totals.node_pairs;
     resize(contacts.size, totals);
     exec.for_each(label, rows + 1,
-                  NodeListBody{counted, body_of_row_, const_view(squares_), bodies,
-                               row_of_node_.view(), pair_start_.view()});
+                  NodeListOp{counted, body_of_row_, const_view(squares_), bodies,
+                             row_of_node_.view(), pair_start_.view()});
     exec.for_each(
         label, contacts.size + 1,
-        TouchListBody{in, counted, bodies, block_start_.view(), part_start_.view(), row_.view(),
-                      node_.view(), contact_.view(), part_.view(), part_block_.view(),
-                      part_body_.view(), jacobian_.view(), touches_.view()});
+        TouchListOp{in, counted, bodies, block_start_.view(), part_start_.view(), row_.view(),
+                    node_.view(), contact_.view(), part_.view(), part_block_.view(),
+                    part_body_.view(), jacobian_.view(), touches_.view()});
     int bits = 1;
     while (rows >> bits > 0) ++bits;
     exec.sort_pairs(label, touches_.view(), {}, bits);
     exec.for_each(label, std::max(rows + 1, totals.blocks),
-                  RowTouchesBody{const_view(touches_), touch_start_.view(), touch_.view()});
+                  RowTouchesOp{const_view(touches_), touch_start_.view(), touch_.view()});
   }
 
   /// Sets the views of the lists.

@@ -86,9 +86,9 @@ class TwoLevelIteration {
   const CompliantBodies& bodies() const { return numbers_.touching().bodies; }
   const TouchingRows& rows() const { return numbers_.touching().rows; }
 
-  template <class Body>
-  void for_each(std::int64_t count, const Body& body) {
-    exec_.for_each(label, count, body);
+  template <class Op>
+  void for_each(std::int64_t count, const Op& op) {
+    exec_.for_each(label, count, op);
   }
 
   void resize() {
@@ -115,11 +115,11 @@ class TwoLevelIteration {
     numbers_.set_damping(exec_, damping);
     exec_.copy(label, numbers_.start_velocity(), velocity());
     for_each(contact_numbers_ / 3,
-             TouchVelocityBody{rows(), numbers_.start_velocity(), free_velocity_.view()});
+             TouchVelocityOp{rows(), numbers_.start_velocity(), free_velocity_.view()});
     step(numbers_.preload());
     least_error_ = TwoLevelError::least(exec_.load(&sums_.view().data->defect).value[0]);
     if (numbers_.change().size > 0) {
-      for_each(row_numbers_, AddNumbersBody{numbers_.change(), velocity()});
+      for_each(row_numbers_, AddNumbersOp{numbers_.change(), velocity()});
     }
     exec_.copy(label, numbers_.start_impulse(), impulse());
   }
@@ -128,25 +128,25 @@ class TwoLevelIteration {
   void step(View<const double> r) {
     for_each(row_numbers_ / 3, numbers_.defect(velocity(), r, defect_.view()));
     move(velocity());
-    exec_.sum_to(label, 0, row_numbers_, DefectSquareBody{const_view(defect_), const_view(moved_)},
+    exec_.sum_to(label, 0, row_numbers_, DefectSquareOp{const_view(defect_), const_view(moved_)},
                  &sums_.view().data->defect);
   }
   /// image = from + M^-1 of what is in `defect_`.
   void move(View<const double> from) {
-    for_each(row_numbers_, ComplianceBody{bodies(), const_view(defect_), moved_.view()});
-    for_each(row_numbers_ / 3, RowMoveBody{bodies(), const_view(moved_), from, image_.view()});
+    for_each(row_numbers_, ComplianceOp{bodies(), const_view(defect_), moved_.view()});
+    for_each(row_numbers_ / 3, RowMoveOp{bodies(), const_view(moved_), from, image_.view()});
   }
   void sum_error(View<const double> r, View<const double> u) {
     exec_.sum_to(label, 0, contact_numbers_ / 3,
-                 TouchErrorBody{numbers_.constants(), switches_, r, u, const_view(free_velocity_)},
+                 TouchErrorOp{numbers_.constants(), switches_, r, u, const_view(free_velocity_)},
                  &sums_.view().data->error);
   }
   /// The error of impulses and velocities.
   TwoLevelError find_error() {
     step(impulse());
     for_each(node_start_.view().size / 3,
-             NodeVelocityBody{bodies(), const_view(image_), node_start_.view()});
-    for_each(contact_numbers_ / 3, TouchVelocityBody{rows(), velocity(), contact_velocity()});
+             NodeVelocityOp{bodies(), const_view(image_), node_start_.view()});
+    for_each(contact_numbers_ / 3, TouchVelocityOp{rows(), velocity(), contact_velocity()});
     sum_error(impulse(), contact_velocity());
     const Sums sums = exec_.load(sums_.view().data);
     TwoLevelError error =
@@ -179,7 +179,7 @@ class TwoLevelIteration {
       outcome.sweeps += step_contacts(control.enough());
       ++outcome.outer_iterations;
       for_each(row_numbers_ / 3,
-               RowPushBody{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
+               RowPushOp{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
       move(const_view(image_));
       if (control.mixes()) {
         mixer.observe(velocity(), const_view(image_));
@@ -209,7 +209,7 @@ class TwoLevelIteration {
         numbers_.grow_majorants(exec_);
         start_steps(state);
       } else {
-        exec_.once(label, ProximalDecideBody{state});
+        exec_.once(label, ProximalDecideOp{state});
       }
     }
   }
@@ -224,7 +224,7 @@ class TwoLevelIteration {
     });
   }
   void start_steps(ProximalState* state) {
-    exec_.once(label, ProximalStartBody{state});
+    exec_.once(label, ProximalStartOp{state});
     exec_.copy(label, const_view(stepped_), impulse());
     exec_.copy(label, const_view(stepped_), ahead_.view());
     exec_.copy(label, const_view(node_start_), node_velocity_.view());
@@ -232,13 +232,13 @@ class TwoLevelIteration {
   void step_contacts_once(const ProximalState* state, int step) {
     const TouchingNodes& touching = numbers_.touching();
     for_each(contact_numbers_ / 3,
-             ProximalStepBody{touching, numbers_.constants(), numbers_.majorant(), switches_,
-                              const_view(node_velocity_), state, step, ahead_.view(), impulse(),
-                              past_.view(), terms_.view()});
+             ProximalStepOp{touching, numbers_.constants(), numbers_.majorant(), switches_,
+                            const_view(node_velocity_), state, step, ahead_.view(), impulse(),
+                            past_.view(), terms_.view()});
     for_each(push_.view().size / 3,
-             NodePushBody{touching, const_view(ahead_), const_view(stepped_), push_.view()});
-    for_each(push_.view().size, NodeMoveBody{bodies(), const_view(push_), const_view(node_start_),
-                                             node_velocity_.view()});
+             NodePushOp{touching, const_view(ahead_), const_view(stepped_), push_.view()});
+    for_each(push_.view().size, NodeMoveOp{bodies(), const_view(push_), const_view(node_start_),
+                                           node_velocity_.view()});
   }
 
   CudaExec exec_;
@@ -255,7 +255,7 @@ class TwoLevelIteration {
   Vector free_velocity_, none_, stepped_, ahead_;  ///< [3 contacts]
   Vector image_, defect_, moved_;                  ///< [rows][3]; the last two in frames
   Vector node_start_, node_velocity_, push_;  ///< [nodes][3] in frames; node_start_: with stepped_
-  Vector past_;                               ///< [contacts][6], of ProximalStepBody
+  Vector past_;                               ///< [contacts][6], of ProximalStepOp
   DeviceVector<ProximalState::Sums> terms_;   ///< [contacts]
   DeviceVector<ProximalState> state_;
   IterationGraph run_;  ///< of the present numbers

@@ -35,7 +35,7 @@ class TwoLevelNumbers {
     store_.set_inverses(exec, factors, start.time_step, lists.model_body, host_bodies_);
     lists_.set_bodies(exec, lists, host_bodies_);
     upload(exec, start);
-    lists_.make(exec, {points, exec.view(arrays.centre), static_cast<std::int32_t>(node_count_)},
+    lists_.make(exec, {points, exec.view(arrays.center), static_cast<std::int32_t>(node_count_)},
                 contacts_);
     lists_.set(touching_);
     rows_ = rows;
@@ -49,12 +49,12 @@ class TwoLevelNumbers {
     weight_.resize(numbers);
     bodies.diagonal = {rows.pair, rows.block_of, rows.unknown_count, node_count_, inverse_.view()};
     exec.for_each(label, lists_.diagonal_rows().size,
-                  DiagonalInvertBody{lists_.diagonal_rows(), {rows, values_, bodies.diagonal}});
-    exec.for_each(label, blocks, TurnJacobianBody{bodies, touching_.rows, turned_.view()});
+                  DiagonalInvertOp{lists_.diagonal_rows(), {rows, values_, bodies.diagonal}});
+    exec.for_each(label, blocks, TurnJacobianOp{bodies, touching_.rows, turned_.view()});
     touching_.turned = const_view(turned_);
     exec.for_each(label, numbers / 3,
-                  RowStartBody{lists_.system_row(), rows, values_, exec.view(arrays.x),
-                               start_velocity_.view(), weight_.view()});
+                  RowStartOp{lists_.system_row(), rows, values_, exec.view(arrays.x),
+                             start_velocity_.view(), weight_.view()});
   }
 
   /// Computes the compliance of the bodies, the blocks of the contacts and their majorants.
@@ -72,7 +72,7 @@ class TwoLevelNumbers {
     scale_.resize(bodies.bodies.size);
     for (DeviceVector<double>* v : {&push_, &before_, &after_}) v->resize(3 * nodes);
     exec.for_each_item(label, lists_.pair_start(), lists_.node_pairs(),
-                       ComplianceBlockBody{bodies, compliance_.view()});
+                       ComplianceBlockOp{bodies, compliance_.view()});
     bodies.compliance = View<const float>(compliance_.view());
     exec.copy(label, laws_, constants_.view());
     set_majorants(exec, touching_,
@@ -82,7 +82,7 @@ class TwoLevelNumbers {
 
   /// Doubles the majorants.
   void grow_majorants(CudaExec& exec) {
-    exec.for_each(label, majorant_.view().size, MajorantGrowBody{majorant_.view()});
+    exec.for_each(label, majorant_.view().size, MajorantGrowOp{majorant_.view()});
   }
 
   const TouchingNodes& touching() const { return touching_; }
@@ -96,9 +96,9 @@ class TwoLevelNumbers {
   View<const std::int32_t> model_block() const { return lists_.model_block(); }
 
   /// b + J^T (impulse - preload) - A velocity, in frames.
-  RowDefectBody defect(View<const double> velocity,
-                       View<const double> impulse,
-                       View<double> out) const {
+  RowDefectOp defect(View<const double> velocity,
+                     View<const double> impulse,
+                     View<double> out) const {
     return {touching_.bodies, touching_.rows, rows_,    values_, load_,
             velocity,         impulse,        preload_, out};
   }
