@@ -123,10 +123,11 @@ void add_scene(const Scene& scene, const SceneGeometry& geometry, Hash& hash) {
   hash.add(geometry.load_nodes);
 }
 
-/// A simulation may go on with another back end, device or number of threads, and without skipping.
+/// A simulation may go on with another back end, device, number of threads or limit of time, and
+/// without skipping.
 void add_options(const SimulateOptions& options, Hash& hash) {
-  const auto& [backend, device, threads, float32_solve, max_iterations, skip, untangle, progress] =
-      options;
+  const auto& [backend, device, threads, float32_solve, max_iterations, max_step_seconds, skip,
+               untangle, progress] = options;
   hash.add(float32_solve, max_iterations, untangle);
 }
 
