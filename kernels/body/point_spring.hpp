@@ -120,10 +120,10 @@ TETWARP_HD void apply_transposed(const SlotJacobian& j, const double* y, double*
 /// where r and f are parallel, positive semidefinite, at least its symmetric part, and zero where f
 /// pushes along r.
 TETWARP_HD void add_arm_block(const double* r, const double* impulse, double dt, double* block) {
-  const double size = root_of(dot3(r, r) * dot3(impulse, impulse));
-  const double pull = 0.5 * (dot3(r, impulse) + size);
-  if (!(pull > 1e-9 * size)) return;  // also where r or f is zero: they push, or have no direction
   const double along = root_of(dot3(r, r)), force = root_of(dot3(impulse, impulse));
+  const double size = along * force, pull = 0.5 * (dot3(r, impulse) + size);
+  // Not where f pushes, r or f has no direction, or the square of f is beyond all numbers.
+  if (!(pull > 1e-9 * size && size < 1e150)) return;
   double d[3];
   for (int i = 0; i < 3; ++i) d[i] = r[i] / along + impulse[i] / force;
   const double square = dot3(d, d);

@@ -115,7 +115,7 @@ class Assembly {
     if (point.rigid < 0) return;
     const Vector3d arm = state_.frame[static_cast<std::size_t>(point.rigid)].rotation * point.local;
     const double size = arm.norm() * impulse.norm();
-    if (size == 0) return;
+    if (size == 0 || !(size < 1e150)) return;
     const Vector3d bisector = arm.normalized() + impulse.normalized();
     const double cosine = bisector.norm() / 2;  // of half the angle
     if (cosine * cosine <= 1e-9) return;
