@@ -1,5 +1,5 @@
 # Every command and block of code in README.md and docs/ is run; links are checked.
-if(NOT TETWARP_PYTHON)
+if(NOT TETWARP_PYTHON3)
   add_test(NAME docs COMMAND ${CMAKE_COMMAND} -E echo "skipped: no python3")
   set_tests_properties(docs PROPERTIES LABELS docs SKIP_REGULAR_EXPRESSION skipped)
   return()
@@ -8,7 +8,7 @@ endif()
 set(tetwarp_pages CHANGELOG CONTRIBUTING README docs/architecture docs/benchmarks docs/contact docs/coordinates
   docs/cuda docs/formats docs/glossary docs/guide docs/scenes docs/simulate docs/tried)
 list(TRANSFORM tetwarp_pages REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.md")
-set(tetwarp_docs_test ${TETWARP_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py)
+set(tetwarp_docs_test ${TETWARP_PYTHON3} -B ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py)
 add_custom_command(OUTPUT docs_blocks.cpp
   COMMAND ${tetwarp_docs_test} extract ${PROJECT_SOURCE_DIR} docs_blocks.cpp
   DEPENDS ${tetwarp_pages} ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py
