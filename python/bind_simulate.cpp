@@ -243,7 +243,7 @@ void bind_simulate(nb::module_& module) {
           nb::arg("index"))
       .def(
           "image", [](nb::handle self, std::size_t index) { return image_of(self, index); },
-          nb::arg("index"))
+          nb::arg("index"), nb::sig("def image(self, index: int) -> tuple | None"))
       .def(
           "positions",
           [](SceneSimulator& self, std::size_t index) {

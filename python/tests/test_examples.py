@@ -3,13 +3,18 @@
 import doctest
 import importlib
 import inspect
+import os
 import pkgutil
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy
 import pytest
 
 import tetwarp
 
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "python"
 MODULES = [m.name for m in pkgutil.iter_modules(tetwarp.__path__) if m.name != "_core"]
 
 
@@ -27,6 +32,25 @@ def test_every_public_name_has_a_docstring():
         value = getattr(tetwarp, name)
         if not isinstance(value, dict):
             assert inspect.getdoc(value), name
+
+
+@pytest.mark.parametrize("name, written", [
+    ("warp_head", ["bent.nii.gz", "field.nii.gz", "head.nii.gz"]),
+    ("simulate_warp", [f"orange_{number}.nii.gz" for number in (1, 2, 3, 4)]),
+])
+def test_examples_run(name, written, tmp_path):
+    if not EXAMPLES.exists():
+        pytest.skip("no folder examples beside the tests")
+    package = str(Path(tetwarp.__file__).parents[1])
+
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / f"{name}.py"], cwd=tmp_path, text=True, capture_output=True,
+        env=os.environ | {"PYTHONPATH": package}, check=False,
+    )
+
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == written
+    assert "WarpResult" in done.stdout
 
 
 def test_the_module_has_stubs():

@@ -28,7 +28,7 @@ class Csr(NamedTuple):
 
     def tocsr(self) -> Any:
         """As scipy.sparse.csr_array, which shares the arrays."""
-        import scipy.sparse
+        import scipy.sparse  # type: ignore[import-untyped, unused-ignore]
 
         return scipy.sparse.csr_array((self.data, self.indices, self.indptr), shape=self.shape)
 

@@ -71,7 +71,9 @@ class Grid:
         spacing = np.linalg.norm(matrix[:3, :3], axis=0)
         if not np.all(spacing > 0):
             raise ValueError("affine: expected columns other than 0")
-        return cls(shape, tuple(spacing), tuple(matrix[:3, 3]), matrix[:3, :3] / spacing)
+        direction: Any = matrix[:3, :3] / spacing
+        place: tuple[Any, Any] = tuple(spacing), tuple(matrix[:3, 3])
+        return cls(shape, *place, direction)
 
     @property
     def affine(self) -> np.ndarray:
@@ -94,8 +96,7 @@ class Grid:
 
 
 def grid_from_core(grid: _core.Grid) -> Grid:
-    x, y, z = grid.dims
-    return Grid((z, y, x), tuple(grid.spacing), tuple(grid.origin), grid.direction)
+    return make_grid(grid.dims[::-1], grid.spacing, grid.origin, grid.direction, None)
 
 
 def make_grid(shape: Any, spacing: Any, origin: Any, direction: Any, affine: Any) -> Grid:
@@ -121,9 +122,9 @@ def reference_grid(reference: Any) -> Grid:
     if hasattr(reference, "affine") and hasattr(reference, "shape"):  # nibabel: axes x, y, z
         return Grid.from_affine(tuple(reference.shape[:3])[::-1], reference.affine)
     if hasattr(reference, "GetSpacing") and hasattr(reference, "GetDirection"):  # SimpleITK
-        return Grid(
+        return make_grid(
             tuple(reference.GetSize())[::-1], reference.GetSpacing(), reference.GetOrigin(),
-            np.reshape(reference.GetDirection(), (3, 3)),
+            np.reshape(reference.GetDirection(), (3, 3)), None,
         )
     raise ValueError(
         "reference: expected a tetwarp.Grid, a Volume, a result of a warp, or an image of nibabel "
