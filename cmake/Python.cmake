@@ -3,7 +3,7 @@
 # folder python/tetwarp is complete: PYTHONPATH=<build>/python. `pip install` builds and installs the
 # same targets (pyproject.toml).
 set(TETWARP_HAS_PYTHON FALSE)
-set(tetwarp_python_missing "")
+set(tetwarp_python_missing "wish for it: TETWARP_PYTHON is OFF")
 if(NOT TETWARP_PYTHON STREQUAL "OFF")
   find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module)
   if(Python_Development.Module_FOUND AND Python_Interpreter_FOUND)
@@ -27,7 +27,7 @@ if(NOT TETWARP_HAS_PYTHON)
   return()
 endif()
 
-nanobind_add_module(tetwarp_python NB_STATIC STABLE_ABI
+nanobind_add_module(tetwarp_python NB_STATIC STABLE_ABI NB_SUPPRESS_WARNINGS
   python/arrays.cpp python/bind_contact.cpp python/bind_files.cpp python/bind_mesh.cpp
   python/bind_simulate.cpp python/bind_volume.cpp python/bind_warp.cpp python/interruption.cpp
   python/module.cpp python/point_map.cpp)

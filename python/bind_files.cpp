@@ -163,6 +163,7 @@ void write_mesh_file(const std::string& path,
                      const std::vector<double>& times) {
   const Mesh mesh = mesh_of(points, tets, hexes);
   std::vector<std::vector<Point3>> steps;
+  steps.reserve(displacements.size());
   for (const InPoints& step : displacements) steps.push_back(points_of(step));
   file_call([&] {
     write_mesh(path, mesh, steps, times);

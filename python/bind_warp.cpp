@@ -107,6 +107,7 @@ nb::dict run_step(ArrayWarper& warper,
                   bool holds_previous,
                   nb::object progress) {
   std::vector<void*> samples;
+  samples.reserve(volumes.size());
   for (const OutSamples& volume : volumes) samples.push_back(volume.data());
   const PositionsView positions(deformed.data(), static_cast<std::int64_t>(deformed.shape(0)),
                                 Memory::host);

@@ -42,7 +42,7 @@ def main():
         shape = np.ceil((high - low) / SPACING).astype(int)[::-1] + 1
         around = tetwarp.Grid(tuple(shape), (SPACING,) * 3, tuple(low))
         result = tetwarp.warp(image, *mesh, nodes, reference=around)
-        tetwarp.write(f"orange_{step // 10}.nii.gz", tetwarp.Volume(result.volume, around))
+        tetwarp.write(f"orange_{step // 10}.nii.gz", result)
         print(f"{simulator.time:.2f} s, {len(simulator.contacts())} contacts: {result}")
 
 

@@ -20,7 +20,7 @@ def main():
 
     result = tetwarp.warp(head, *mesh, bent)
     print(head, mesh, result, sep="\n")
-    tetwarp.write("bent.nii.gz", tetwarp.Volume(result.volume, result.grid, nifti=head.nifti))
+    tetwarp.write("bent.nii.gz", result)
 
     field = tetwarp.displacement_field(*mesh, bent, reference=head)
     tetwarp.write("field.nii.gz", field)

@@ -66,7 +66,7 @@ def test_warps_have_the_bits_of_the_command(name, tmp_path, command):
     expected = tetwarp.read(tmp_path / "out.vtkhdf")
     assert expected.array.dtype == result.volume.dtype
     assert np.array_equal(expected.array, result.volume)
-    assert expected.grid == result.grid
+    assert expected.grid == result.grid and expected.name == result.names[0]
     assert result.report["counts"]["covered"] > 0
 
 
@@ -88,6 +88,9 @@ def test_further_outputs_have_the_bits_of_the_command(tmp_path, command):
         stored_name = "tetwarp_tet" if name == "owner" else f"tetwarp_{name}"
         expected = tetwarp.read(tmp_path / "out.vtkhdf", array=stored_name)
         assert np.array_equal(expected.array, result.extras[name]), name
+    tetwarp.write(tmp_path / "mine.vtkhdf", result)
+    mine, theirs = (tetwarp.read_header(tmp_path / f"{n}.vtkhdf").arrays for n in ("mine", "out"))
+    assert sorted(a["name"] for a in mine) == sorted(a["name"] for a in theirs)
 
 
 def test_another_grid_and_nifti_have_the_bits_of_the_command(tmp_path, command):

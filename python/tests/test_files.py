@@ -47,6 +47,18 @@ def test_headers_of_nifti_are_kept(tmp_path):
     assert tetwarp.read(tmp_path / "b.nii").nifti == read.nifti
 
 
+def test_results_of_a_warp_keep_the_header(tmp_path, mesh, twisted, volume):
+    tetwarp.write(tmp_path / "a.nii", volume)
+    read = tetwarp.read(tmp_path / "a.nii")
+    read.nifti["description"] = "before"
+
+    tetwarp.write(tmp_path / "b.nii.gz", tetwarp.warp(read, *mesh, twisted))
+
+    assert tetwarp.read(tmp_path / "b.nii.gz").nifti["description"] == "before"
+    with pytest.raises(tetwarp.IoError, match="c.nii"):
+        tetwarp.write(tmp_path / "c.nii", tetwarp.warp(read, *mesh, twisted, outputs="mask"))
+
+
 def test_images_of_nibabel_are_the_same(tmp_path):
     nibabel = pytest.importorskip("nibabel")
     affine = np.array([(-2, 0, 0, 90), (0, 0, 3, -126), (0, 2.5, 0, -72), (0, 0, 0, 1.0)])

@@ -15,6 +15,7 @@ from ._fields import Field
 from ._grid import Grid, grid_from_core
 from ._mesh import Mesh, Surface, joined_cells
 from ._volume import Volume
+from ._warp import WarpResult
 
 _ITK_FIELDS = ("tetwarp_displacement", "tetwarp_forward")
 
@@ -152,9 +153,23 @@ def _volume_of(value: Any, grid: Grid | None, where: str) -> Volume:
     return Volume(value, grid)
 
 
+def _volumes_of(result: WarpResult) -> list[Volume]:
+    """All arrays of a warp, with the names that the command gives them."""
+    volumes = [
+        Volume(array, result.grid, name, nifti)
+        for array, name, nifti in zip(result.volumes, result.names, result.nifti)
+    ]
+    return volumes + [
+        Volume(array, result.grid, "tetwarp_" + ("tet" if name == "owner" else name))
+        for name, array in result.extras.items()
+    ]
+
+
 def _write_volumes(
     path: str, value: Any, grid: Grid | None, times: Sequence[float] | None, compress: int
 ) -> None:
+    if isinstance(value, WarpResult):
+        value = _volumes_of(value)
     many = list(value) if isinstance(value, (list, tuple)) else [value]
     if not many:
         raise ValueError("value: expected at least one volume")
@@ -207,8 +222,8 @@ def write(
     ----------
     path : of volumes ``.nii``, ``.nii.gz``, or any other name: VTKHDF, as of meshes and
         surfaces; of contact problems: FCLIB
-    value : Volume, Field or samples (with `grid`), a list of these on one grid, a Mesh, a
-        Surface or a ContactProblem
+    value : Volume, Field or samples (with `grid`), a list of these on one grid, a WarpResult, a
+        Mesh, a Surface or a ContactProblem; a NIfTI file takes one array
     grid : of samples
     times : of several volumes: they are the steps of one array; of a mesh: one per step
     deformed : of a mesh: node positions (n, 3) per step

@@ -37,6 +37,9 @@ class WarpResult:
     report : counts of voxels and tetrahedra, seconds of the stages, totals, back end
     volumes : one array per source; `volume` is the first
     extras : the arrays of `outputs` by name, which are attributes as well: ``result.mask``
+    names, nifti : per source its name and what its NIfTI header says, for files
+
+    `write` writes it with all its arrays, as the command does.
     """
 
     volume: np.ndarray
@@ -44,6 +47,8 @@ class WarpResult:
     report: dict[str, Any]
     volumes: tuple[np.ndarray, ...] = ()
     extras: dict[str, np.ndarray] = field(default_factory=dict)
+    names: tuple[str, ...] = ("values",)
+    nifti: tuple[dict[str, Any] | None, ...] = (None,)
 
     def __getattr__(self, name: str) -> np.ndarray:
         extras = self.__dict__.get("extras", {})
@@ -174,6 +179,8 @@ class Warper:
         sources = _sources_of(volume, spacing, origin, direction, affine)
         points = points_of(rest, "rest")
         self._arrays = [source.array for source in sources]
+        self._names = tuple(source.name for source in sources)
+        self._nifti = tuple(source.nifti for source in sources)
         self._node_count = len(points)
         self._warper: _core.Warper | None = _core.Warper(
             self._arrays, sources[0].grid._core(), points,
@@ -232,7 +239,9 @@ class Warper:
         volumes = self._outputs(out)
         extras = {name: self._extra(name) for name in names}
         report = warper.step(positions, volumes, extras, False, progress)
-        return WarpResult(volumes[0], self._grid, report, tuple(volumes), extras)
+        return WarpResult(
+            volumes[0], self._grid, report, tuple(volumes), extras, self._names, self._nifti
+        )
 
     step = __call__
 
