@@ -27,7 +27,7 @@ if(NOT TETWARP_HAS_PYTHON)
   return()
 endif()
 
-nanobind_add_module(tetwarp_python NB_STATIC STABLE_ABI NB_SUPPRESS_WARNINGS
+nanobind_add_module(tetwarp_python NB_STATIC NB_SUPPRESS_WARNINGS
   python/arrays.cpp python/bind_contact.cpp python/bind_files.cpp python/bind_mesh.cpp
   python/bind_simulate.cpp python/bind_volume.cpp python/bind_warp.cpp python/interruption.cpp
   python/module.cpp python/point_map.cpp)

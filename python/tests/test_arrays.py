@@ -145,10 +145,25 @@ def _warp(source, mesh, **changes):
     ("out", np.zeros((20, 24, 64), np.float32)[..., ::2], "out: expected an array in C order"),
     ("spacing", (1, 1, 1), "volume: a Volume has a grid; leave out spacing"),
     ("threads", -1, "threads"),
+    ("default_value", "x", "default_value: expected a number, got 'x'"),
+    ("deformed", np.full((1, 3), np.nan), "deformed: expected .* rows"),
 ])
 def test_errors_name_the_argument(name, change, text, volume, mesh):
     with pytest.raises(ValueError, match=text):
         _warp(volume, mesh, **{name: change})
+
+
+def test_positions_must_be_finite(volume, mesh):
+    broken = mesh.points.copy()
+    broken[3, 1] = np.inf
+    for name in ("rest", "deformed"):
+        with pytest.raises(ValueError, match=f"{name}: expected finite positions, row 3 is not"):
+            _warp(volume, mesh, **{name: broken})
+
+
+def test_forward_fields_are_on_the_grid_of_the_source(volume, mesh):
+    with pytest.raises(ValueError, match="outputs: 'forward' is on the grid of the source"):
+        _warp(volume, mesh, outputs="forward", reference=tetwarp.Grid((3, 3, 3)))
 
 
 def test_outputs_must_be_writable_and_apart_from_sources(volume, mesh):
@@ -166,10 +181,12 @@ def test_outputs_must_be_writable_and_apart_from_sources(volume, mesh):
     (dict(origin=(0, 0, float("nan"))), "origin"),
     (dict(direction=np.zeros((3, 3))), "direction"),
     (dict(direction=np.eye(2)), "direction: expected 3 x 3 numbers, got 4"),
+    (dict(shape=(4, 0, 6)), "shape: expected 1 to .* voxels along each axis"),
+    (dict(shape=(4, 6)), "shape: expected three numbers"),
 ])
 def test_grids_are_checked(keywords, text):
     with pytest.raises(ValueError, match=text):
-        tetwarp.Grid((4, 5, 6), **keywords)
+        tetwarp.Grid(**{"shape": (4, 5, 6), **keywords})
 
 
 def test_grids_have_the_affine_matrix_of_nibabel():

@@ -38,6 +38,23 @@ def samples_of(value: Any, name: str) -> np.ndarray:
     return np.ascontiguousarray(array)
 
 
+def number_of(value: Any, name: str) -> float:
+    """A number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected a number, got {value!r}") from None
+
+
+def nodes_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
+    """Positions of nodes: as points_of(), and finite."""
+    array = points_of(value, name, count)
+    finite = np.isfinite(array).all(axis=1)
+    if not finite.all():
+        raise ValueError(f"{name}: expected finite positions, row {int(finite.argmin())} is not")
+    return array
+
+
 def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Positions of shape (n, 3), float64 in C order; copied only if they are not."""
     try:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, numbers_of, points_of
+from ._arrays import cells_of, nodes_of, number_of, points_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._volume import Volume
@@ -246,17 +246,13 @@ def transform_points(
     array([[0.5, 0.5, 0.5]])
     """
     where = points_of(points, "points")
-    start = points_of(rest, "rest")
-    end = points_of(deformed, "deformed", len(start))
+    start = nodes_of(rest, "rest")
+    end = nodes_of(deformed, "deformed", len(start))
     tets, hexes = cells_of(cells, "cells", len(start))
     if len(hexes):
         raise ValueError("cells: expected tetrahedra (m, 4); points in hexahedra are not moved")
     if inverse:
         start, end = end, start
-    for name, nodes in (("deformed" if inverse else "rest", start),
-                        ("rest" if inverse else "deformed", end)):
-        if not np.isfinite(nodes).all():
-            raise ValueError(f"{name}: expected finite positions")
     if reference is None:
         low, high = start.min(axis=0), start.max(axis=0)
         # A power of two, so that rounding keeps positions of few binary digits.
@@ -265,7 +261,7 @@ def transform_points(
     else:
         grid = reference_grid(reference)
     moved, owners = _core.map_points(where, grid._core(), start, tets, end)
-    value = numbers_of(default_value, "default_value", 1)[0]
+    value = number_of(default_value, "default_value")
     if not np.isnan(value):
         moved[owners < 0] = value
     return (moved, owners) if return_owners else moved

@@ -9,7 +9,7 @@ from typing import Any, Iterator, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, points_of, triangles_of
+from ._arrays import cells_of, nodes_of, triangles_of
 from ._contact import ContactProblem
 from ._fields import Field
 from ._grid import Grid, grid_from_core
@@ -193,10 +193,10 @@ def _write_volumes(
 
 
 def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Sequence[float] | None) -> None:
-    points = points_of(mesh.points, "points")
+    points = nodes_of(mesh.points, "points")
     tets, hexes = cells_of(mesh.cells, "cells", len(points))
     steps = [] if deformed is None else list(deformed)
-    moved = [points_of(step, f"deformed[{n}]", len(points)) for n, step in enumerate(steps)]
+    moved = [nodes_of(step, f"deformed[{n}]", len(points)) for n, step in enumerate(steps)]
     if times is None:
         last = max(len(moved) - 1, 1)
         times = [number / last for number in range(len(moved))] if len(moved) != 1 else [1.0]
@@ -247,7 +247,7 @@ def write(
     if isinstance(value, Mesh):
         _write_mesh(name, value, deformed, times)
     elif isinstance(value, Surface):
-        points = points_of(value.points, "points")
+        points = nodes_of(value.points, "points")
         _core.write_surface(name, points, triangles_of(value.triangles, "triangles", len(points)))
     elif isinstance(value, ContactProblem):
         _core.write_contact_problem(name, value._core(), "", "")

@@ -45,6 +45,8 @@ class Grid:
         shape = tuple(int(n) for n in np.reshape(self.shape, -1))
         if len(shape) != 3:
             raise ValueError(f"shape: expected three numbers z, y, x, got {self.shape}")
+        if not all(1 <= n <= 2**30 for n in shape):
+            raise ValueError(f"shape: expected 1 to 2^30 voxels along each axis, got {shape}")
         rows = numbers_of(self.direction, "direction")
         if rows.size != 9:
             raise ValueError(f"direction: expected 3 x 3 numbers, got {rows.size}")

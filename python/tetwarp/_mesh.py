@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, points_of, vector_of
+from ._arrays import cells_of, nodes_of, vector_of
 from ._volume import volume_of
 
 Cells = Any  # (m, 4), (m, 8), or a pair of both
@@ -127,7 +127,7 @@ def deform(
     >>> deform(*mesh, kind="translate", offset=(1, 0, 0))[0] - mesh.points[0]
     array([1., 0., 0.])
     """
-    nodes = points_of(points, "points")
+    nodes = nodes_of(points, "points")
     tets, hexes = cells_of(cells, "cells", len(nodes))
     if axis not in _AXES:
         raise ValueError(f"axis: expected x, y or z, got {axis!r}")
@@ -146,7 +146,7 @@ def boundary_surface(points: Any, cells: Cells) -> Surface:
     >>> boundary_surface(*mesh)
     Surface(8 points, 12 triangles)
     """
-    nodes = points_of(points, "points")
+    nodes = nodes_of(points, "points")
     return Surface(*_core.boundary_surface(nodes, *cells_of(cells, "cells", len(nodes))))
 
 

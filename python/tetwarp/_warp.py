@@ -9,7 +9,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, describe, out_of, points_of
+from ._arrays import cells_of, describe, nodes_of, number_of, out_of
 from ._grid import Grid, grid_from_core, reference_grid
 from ._mesh import Cells
 from ._volume import Volume, volume_of
@@ -177,7 +177,7 @@ class Warper:
         threads: int = 0,
     ) -> None:
         sources = _sources_of(volume, spacing, origin, direction, affine)
-        points = points_of(rest, "rest")
+        points = nodes_of(rest, "rest")
         self._arrays = [source.array for source in sources]
         self._names = tuple(source.name for source in sources)
         self._nifti = tuple(source.nifti for source in sources)
@@ -187,11 +187,12 @@ class Warper:
             *cells_of(cells, "cells", len(points)),
             interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
             intensity=intensity, quantities=_quantities_of(quantity, len(sources)),
-            outside=outside, default_value=float(default_value),
+            outside=outside, default_value=number_of(default_value, "default_value"),
             output_grid=None if reference is None else reference_grid(reference)._core(),
             backend=backend, device=int(device), threads=int(threads),
         )
         self._grid = grid_from_core(self._warper.output_grid)
+        self._is_source_grid = self._grid == sources[0].grid
 
     @property
     def grid(self) -> Grid:
@@ -234,8 +235,10 @@ class Warper:
             the Warper is closed, or a step of it is running.
         """
         warper = self._open()
-        positions = points_of(deformed, "deformed", self._node_count)
+        positions = nodes_of(deformed, "deformed", self._node_count)
         names = extras_of(outputs, EXTRAS)
+        if "forward" in names and not self._is_source_grid:
+            raise ValueError("outputs: 'forward' is on the grid of the source; give no reference")
         volumes = self._outputs(out)
         extras = {name: self._extra(name) for name in names}
         report = warper.step(positions, volumes, extras, False, progress)
