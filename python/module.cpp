@@ -32,9 +32,9 @@ NB_MODULE(_core, module) {
   using namespace tetwarp;
   module.doc() = "The library behind the package tetwarp.";
   module.attr("version") = TETWARP_VERSION;
-  nb::exception<CudaError>(module, "CudaError", PyExc_RuntimeError);
-  nb::exception<IoError>(module, "IoError", PyExc_OSError);
-  nb::exception<Cancelled>(module, "Cancelled", PyExc_RuntimeError);
+  const nb::exception<CudaError> cuda_error(module, "CudaError", PyExc_RuntimeError);
+  const nb::exception<IoError> io_error(module, "IoError", PyExc_OSError);
+  const nb::exception<Cancelled> cancelled(module, "Cancelled", PyExc_RuntimeError);
   module.def("available_backends", &backends, nb::arg("device") = 0,
              "A dict per back end: backend, usable, device, and why it is not usable.");
   python::bind_volume(module);
