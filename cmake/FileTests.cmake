@@ -61,21 +61,21 @@ add_test(NAME fuzz_mesh COMMAND fuzz_mesh 2 1)
 set_tests_properties(fuzz_mesh PROPERTIES LABELS io)
 
 # The distribution's interpreter first: its VTK is what the packages in ./dev install.
-find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-find_program(TETWARP_PYTHON python3)
-if(TETWARP_PYTHON)
-  add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON}
+find_program(TETWARP_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(TETWARP_PYTHON3 python3)
+if(TETWARP_PYTHON3)
+  add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
-  add_test(NAME axes COMMAND ${TETWARP_PYTHON}
+  add_test(NAME axes COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_axes.py $<TARGET_FILE:tetwarp_command>)
-  add_test(NAME walk COMMAND ${TETWARP_PYTHON}
+  add_test(NAME walk COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_walk.py $<TARGET_FILE:tetwarp_command>)
-  add_test(NAME simulation COMMAND ${TETWARP_PYTHON}
+  add_test(NAME simulation COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
-  add_test(NAME film COMMAND ${TETWARP_PYTHON}
+  add_test(NAME film COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
   set_tests_properties(vtk_reader axes walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
-  add_test(NAME bench_report COMMAND ${TETWARP_PYTHON}
+  add_test(NAME bench_report COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
     LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
@@ -125,3 +125,14 @@ tetwarp_add_cli_tests(tetwarp_cli_memory_tests
   tests/cli/test_cli_memory.cpp
   tests/cli/test_cli_memory_peak.cpp)
 tetwarp_discover(tetwarp_cli_memory_tests long)
+
+# ---- the Python package -------------------------------------------------------------------------
+if(TETWARP_HAS_PYTHON)
+  add_test(NAME python COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/python/tests/run.py)
+  set_tests_properties(python PROPERTIES LABELS python SKIP_RETURN_CODE 77 TIMEOUT 300
+    ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;PYTHONDONTWRITEBYTECODE=1;TETWARP_COMMAND=$<TARGET_FILE:tetwarp_command>")
+else()
+  add_test(NAME python COMMAND ${CMAKE_COMMAND} -E echo
+    "skipped: the Python package was not built: there is no ${tetwarp_python_missing}")
+  set_tests_properties(python PROPERTIES LABELS python SKIP_REGULAR_EXPRESSION skipped)
+endif()

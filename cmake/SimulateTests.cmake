@@ -170,10 +170,10 @@ if(NOT BUILD_SHARED_LIBS)
     bench/peers/collision_pairs.cpp tests/collide/constructed_hits.cpp)
   target_include_directories(tetwarp_collision_pairs PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(tetwarp_collision_pairs PRIVATE tetwarp tetwarp_options)
-  find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-  find_program(TETWARP_PYTHON python3)
-  if(TETWARP_PYTHON)
-    add_test(NAME collision_ipctk COMMAND ${TETWARP_PYTHON}
+  find_program(TETWARP_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(TETWARP_PYTHON3 python3)
+  if(TETWARP_PYTHON3)
+    add_test(NAME collision_ipctk COMMAND ${TETWARP_PYTHON3}
       ${PROJECT_SOURCE_DIR}/bench/peers/collision_ipctk.py
       $<TARGET_FILE:tetwarp_collision_pairs> 10 500)
     set_tests_properties(collision_ipctk PROPERTIES LABELS unit TIMEOUT 300 SKIP_RETURN_CODE 77)

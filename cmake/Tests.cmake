@@ -288,11 +288,11 @@ endif()
 include(cmake/SimulateTests.cmake)
 
 # ---- includes between folders have one direction; source files lie beside their headers ---------
-find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-find_program(TETWARP_PYTHON python3)
-if(TETWARP_PYTHON)
+find_program(TETWARP_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(TETWARP_PYTHON3 python3)
+if(TETWARP_PYTHON3)
   foreach(lint folders sources)
-    add_test(NAME lint_${lint} COMMAND ${TETWARP_PYTHON}
+    add_test(NAME lint_${lint} COMMAND ${TETWARP_PYTHON3}
       ${PROJECT_SOURCE_DIR}/tests/lint/${lint}.py --test)
     set_tests_properties(lint_${lint} PROPERTIES LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
   endforeach()

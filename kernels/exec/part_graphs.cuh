@@ -66,7 +66,7 @@ class PartGraphs {
  private:
   struct Entry {
     View<const std::int64_t> part_start;
-    std::any body;  ///< arguments of the recorded launches
+    std::any op;  ///< arguments of the recorded launches
     std::unique_ptr<PartGraph> graph;
   };
 

@@ -3,7 +3,8 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-LANGUAGES = ("sh", "cpp", "cmake", "json", "text")  # text: formulas and output, never executed
+# text: formulas and output, never executed
+LANGUAGES = ("sh", "cpp", "python", "cmake", "json", "text")
 
 
 @dataclass

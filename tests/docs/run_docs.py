@@ -3,11 +3,13 @@
 
     run_docs.py extract ROOT FILE    writes the C++ blocks of all pages as one program
     run_docs.py run ROOT --command FILE --blocks PROGRAM [--mpirun FILE] [--has gmsh] [--has vtk]
+                [--python FILE --package FOLDER]
 
 Blocks of a page run in order in one empty folder, which holds head.nii.gz and labels.nii.gz; blocks
-of C++ are functions of PROGRAM. Checked as well: links, paths and options in inline code, sizes of
-pictures, that every option of the command is explained, and that docs/formats.md names every field
-of the reports that its commands write.
+of C++ are functions of PROGRAM, blocks of Python a program that grows from block to block. Checked
+as well: links, paths and options in inline code, sizes of pictures, that every option of the
+command is explained, and that docs/formats.md names every field of the reports that its commands
+write.
 """
 import argparse
 import json
@@ -25,7 +27,7 @@ MOST_NOT_RUN = 10
 LARGEST_PICTURE = 150 * 1024  # bytes
 LIBRARIES = ("gmsh", "vtk")  # that a build may be without
 SECONDS = 60  # that a block may take
-SOURCE_FOLDERS = ("bench", "cmake", "docs", "examples", "host", "io", "kernels", "tests")
+SOURCE_FOLDERS = ("bench", "cmake", "docs", "examples", "host", "io", "kernels", "python", "tests")
 
 
 def key_of(page, block):
@@ -105,6 +107,12 @@ def run_block(words, folder, environment, tries):
     return f"more than {SECONDS / tries:.0f} s"
 
 
+def imports(python, name, environment):
+    """Whether an interpreter can import a module."""
+    words = [python, "-c", f"import {name}"]
+    return subprocess.run(words, env=environment, capture_output=True).returncode == 0
+
+
 class Runner:
     def __init__(self, arguments, scratch):
         self.arguments = arguments
@@ -113,6 +121,9 @@ class Runner:
         self.errors = []
         self.not_run = []
         self.counts = {}
+        self.with_package = self.environment | {"PYTHONPATH": str(arguments.package)}
+        self.has_package = bool(arguments.python) and imports(
+            arguments.python, "tetwarp", self.with_package)
 
     def has(self, name):
         """Whether this build or, for other names, the python3 of the blocks has it."""
@@ -120,8 +131,7 @@ class Runner:
             return bool(self.arguments.mpirun)
         if name in LIBRARIES:
             return name in self.arguments.has
-        words = ["python3", "-c", f"import {name}"]
-        return subprocess.run(words, env=self.environment, capture_output=True).returncode == 0
+        return imports("python3", name, self.environment)
 
     def folder_of(self, page):
         return self.scratch / page.name.replace("/", "_")
@@ -130,6 +140,7 @@ class Runner:
         folder = self.folder_of(page)
         folder.mkdir()
         write_images(folder)
+        program = ""  # all blocks of Python so far
         self.errors += [f"{page.name}:{error}" for error in page.errors]
         for block in page.blocks:
             where = f"{page.name}:{block.line}"
@@ -141,6 +152,12 @@ class Runner:
             if block.needs and not self.has(block.needs):
                 print(f"left out: {where}: there is no {block.needs}")
                 continue
+            if block.language == "python":
+                if not self.has_package:
+                    print(f"left out: {where}: there is no Python package, or no NumPy")
+                    continue
+                program += block.text
+                block.lines = program.splitlines()
             problem = self.run_one(page, block, folder)
             if problem:
                 self.errors.append(f"{where}: {problem}")
@@ -158,6 +175,9 @@ class Runner:
         if block.language == "cpp":
             words = [str(self.arguments.blocks.resolve()), key_of(page, block)]
             return run_block(words, folder, self.environment, 1)
+        if block.language == "python":
+            words = [self.arguments.python, "-c", block.text]
+            return run_block(words, folder, self.with_package, 1)
         if block.language == "json":
             try:
                 json.loads(block.text)
@@ -284,6 +304,8 @@ def main():
     parser.add_argument("--command", type=Path)
     parser.add_argument("--blocks", type=Path)
     parser.add_argument("--mpirun", default="")
+    parser.add_argument("--python", default="")
+    parser.add_argument("--package", type=Path)
     parser.add_argument("--has", action="append", default=[], choices=("", *LIBRARIES))
     arguments = parser.parse_args()
     if arguments.action == "extract":

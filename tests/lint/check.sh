@@ -103,12 +103,12 @@ configure_host() {
 
 # Every file compiles alone, so it includes what it needs; warnings are errors. Then functions that
 # only tests reach: those compiled, without optimization so that every call is one, and not in the
-# command (also on the emulated device), the benchmarks and the examples.
+# command (also on the emulated device), the benchmarks and the examples. Without the Python package.
 check_host() {
   local folder=$root/build/check-host
   configure_host "$folder" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= \
     -DCMAKE_CXX_FLAGS='-Werror -ffunction-sections' -DCMAKE_EXE_LINKER_FLAGS=-Wl,--gc-sections \
-    -DTETWARP_DEAD_CODE=ON -DTETWARP_UNITY=OFF
+    -DTETWARP_DEAD_CODE=ON -DTETWARP_UNITY=OFF -DTETWARP_PYTHON=OFF
   cmake --build "$folder"
   python3 "$root/tests/lint/dead.py" "$folder" --programs "$folder"/tetwarp{,-read} \
     "$folder"/tetwarp_{emulated_command,collision_pairs} "$folder"/tetwarp_example_* \
@@ -116,15 +116,15 @@ check_host() {
 }
 
 # All files that a build without CUDA compiles, except docs_blocks.cpp, which is written during the
-# build, and those of ITK, whose headers refuse clang. Units of several files take half the time:
-# most of it goes into the headers of others.
+# build, those of ITK, whose headers refuse clang, and those of nanobind. Units of several files take
+# half the time: most of it goes into the headers of others.
 check_tidy() {
   local folder=$root/build/check-tidy
   has clang-tidy || { echo "left out: no clang-tidy"; return 0; }
   configure_host "$folder" -DCMAKE_UNITY_BUILD=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
     -DCMAKE_DISABLE_FIND_PACKAGE_ITK=ON
-  sed -n '/docs_blocks/d; s/^ *"file": "\(.*\)".*/\1/p' "$folder/compile_commands.json" | sort -u |
-    xargs -n 1 -P "$CMAKE_BUILD_PARALLEL_LEVEL" clang-tidy --quiet \
+  sed -n '/docs_blocks/d; /nanobind/d; s/^ *"file": "\(.*\)".*/\1/p' "$folder/compile_commands.json" |
+    sort -u | xargs -n 1 -P "$CMAKE_BUILD_PARALLEL_LEVEL" clang-tidy --quiet \
       --extra-arg=-Wno-unknown-warning-option -p "$folder"
 }
 

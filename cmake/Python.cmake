@@ -1,0 +1,54 @@
+# The Python package `tetwarp`: the module tetwarp._core, which links the library as it is (all its
+# files are position independent already), and the files of python/tetwarp beside it. In the build
+# folder python/tetwarp is complete: PYTHONPATH=<build>/python. `pip install` builds and installs the
+# same targets (pyproject.toml).
+set(TETWARP_HAS_PYTHON FALSE)
+set(tetwarp_python_missing "wish for it: TETWARP_PYTHON is OFF")
+if(NOT TETWARP_PYTHON STREQUAL "OFF")
+  find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module)
+  if(Python_Development.Module_FOUND AND Python_Interpreter_FOUND)
+    execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir
+      OUTPUT_VARIABLE tetwarp_nanobind OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    find_package(nanobind QUIET CONFIG HINTS ${tetwarp_nanobind})
+    if(nanobind_FOUND AND NOT nanobind_VERSION VERSION_LESS 2.4)
+      set(TETWARP_HAS_PYTHON TRUE)
+    else()
+      set(tetwarp_python_missing "nanobind; ${Python_EXECUTABLE} -m pip install nanobind")
+    endif()
+  else()
+    set(tetwarp_python_missing "the headers of Python 3.9 or later")
+  endif()
+  if(TETWARP_PYTHON STREQUAL "ON" AND NOT TETWARP_HAS_PYTHON)
+    message(FATAL_ERROR "TETWARP_PYTHON=ON, but there is no ${tetwarp_python_missing}")
+  endif()
+endif()
+message(STATUS "tetwarp: Python package: ${TETWARP_HAS_PYTHON}")
+if(NOT TETWARP_HAS_PYTHON)
+  return()
+endif()
+
+nanobind_add_module(tetwarp_python NB_STATIC NB_SUPPRESS_WARNINGS
+  python/arrays.cpp python/bind_contact.cpp python/bind_files.cpp python/bind_mesh.cpp
+  python/bind_simulate.cpp python/bind_volume.cpp python/bind_warp.cpp python/interruption.cpp
+  python/module.cpp python/point_map.cpp)
+set(tetwarp_package ${PROJECT_BINARY_DIR}/python/tetwarp)
+set_target_properties(tetwarp_python PROPERTIES
+  OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${tetwarp_package}
+  UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 3)
+target_include_directories(tetwarp_python PRIVATE ${PROJECT_SOURCE_DIR})
+target_link_libraries(tetwarp_python PRIVATE tetwarp_io tetwarp_options)
+
+set(tetwarp_python_files __init__.py _arrays.py _contact.py _fields.py _files.py _grid.py _mesh.py
+  _simulate.py _volume.py _warp.py py.typed)
+file(MAKE_DIRECTORY ${tetwarp_package})
+foreach(file IN LISTS tetwarp_python_files)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/tetwarp/${file} ${tetwarp_package}/${file} SYMBOLIC)
+endforeach()
+nanobind_add_stub(tetwarp_python_stub MODULE _core PYTHON_PATH ${tetwarp_package}
+  OUTPUT ${tetwarp_package}/_core.pyi DEPENDS tetwarp_python)
+
+if(SKBUILD)
+  install(TARGETS tetwarp_python LIBRARY DESTINATION tetwarp COMPONENT python)
+  install(FILES ${tetwarp_package}/_core.pyi DESTINATION tetwarp COMPONENT python)
+  install(TARGETS tetwarp_command RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR} COMPONENT python)
+endif()

@@ -1,0 +1,227 @@
+/// @file bind_contact.cpp
+/// Contact problems, their solver and their files.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <string>
+#include <tetwarp/contact.hpp>
+#include <tetwarp/contact_io.hpp>
+#include <utility>
+#include <vector>
+
+#include "python/arrays.hpp"
+#include "python/bind.hpp"
+#include "python/choices.hpp"
+#include "python/file_call.hpp"
+#include "python/interruption.hpp"
+
+namespace tetwarp::python {
+namespace {
+using InNumbers = In<double, nb::ndim<1>>;
+using InIndices = In<std::int32_t, nb::ndim<1>>;
+using InStarts = In<std::int64_t, nb::ndim<1>>;
+
+/// Members of a problem and their names in Python, which are those of the C++ members.
+struct NumbersOf {
+  const char* name;
+  std::vector<double> ContactProblem::*member;
+};
+constexpr NumbersOf problem_numbers[] = {{"load", &ContactProblem::load},
+                                         {"velocity_offset", &ContactProblem::velocity_offset},
+                                         {"free_velocity", &ContactProblem::free_velocity},
+                                         {"friction", &ContactProblem::friction},
+                                         {"second_friction", &ContactProblem::second_friction},
+                                         {"impulse_guess", &ContactProblem::impulse_guess}};
+struct MatrixOf {
+  const char* name;
+  SparseMatrix ContactProblem::*member;
+};
+constexpr MatrixOf problem_matrices[] = {{"system", &ContactProblem::system},
+                                         {"jacobian", &ContactProblem::jacobian},
+                                         {"delassus", &ContactProblem::delassus}};
+struct AdhesionOf {
+  const char* name;
+  std::vector<double> AdhesionState::*member;
+};
+constexpr AdhesionOf adhesion_numbers[] = {
+    {"area", &AdhesionState::area},
+    {"stiffness", &AdhesionState::stiffness},
+    {"tangential_stiffness", &AdhesionState::tangential_stiffness},
+    {"intensity", &AdhesionState::intensity},
+    {"gap", &AdhesionState::gap},
+    {"energy", &AdhesionState::energy},
+    {"viscosity", &AdhesionState::viscosity},
+    {"bonding_rate", &AdhesionState::bonding_rate},
+    {"saturation_pressure", &AdhesionState::saturation_pressure}};
+
+std::vector<double> numbers_of(nb::handle array) {
+  return vector_of(nb::cast<InNumbers>(array, false));
+}
+
+/// @param matrix  (data, indices, indptr, (rows, columns))
+SparseMatrix matrix_of(const nb::tuple& matrix) {
+  const auto shape = nb::cast<nb::tuple>(matrix[3]);
+  return {nb::cast<std::int64_t>(shape[0]), nb::cast<std::int64_t>(shape[1]),
+          vector_of(nb::cast<InStarts>(matrix[2], false)),
+          vector_of(nb::cast<InIndices>(matrix[1], false)), numbers_of(matrix[0])};
+}
+
+AdhesionState adhesion_of(const nb::dict& all) {
+  AdhesionState adhesion;
+  adhesion.time_step = nb::cast<double>(all["time_step"]);
+  for (const AdhesionOf& numbers : adhesion_numbers) {
+    if (all.contains(numbers.name)) adhesion.*numbers.member = numbers_of(all[numbers.name]);
+  }
+  return adhesion;
+}
+
+/// @param all  arrays and matrices by the names of the members; what is missing stays empty
+ContactProblem problem_of(const nb::dict& all) {
+  ContactProblem problem;
+  for (const MatrixOf& matrix : problem_matrices) {
+    if (!all.contains(matrix.name)) continue;
+    problem.*matrix.member = matrix_of(nb::cast<nb::tuple>(all[matrix.name]));
+  }
+  for (const NumbersOf& numbers : problem_numbers) {
+    if (all.contains(numbers.name)) problem.*numbers.member = numbers_of(all[numbers.name]);
+  }
+  if (all.contains("block_start")) {
+    problem.block_start = vector_of(nb::cast<InIndices>(all["block_start"], false));
+  }
+  if (all.contains("adhesion")) problem.adhesion = adhesion_of(nb::cast<nb::dict>(all["adhesion"]));
+  return problem;
+}
+
+nb::tuple tuple_of(SparseMatrix matrix) {
+  const nb::tuple shape = nb::make_tuple(matrix.rows, matrix.columns);
+  return nb::make_tuple(array_of(std::move(matrix.value)), array_of(std::move(matrix.column)),
+                        array_of(std::move(matrix.row_start)), shape);
+}
+
+nb::dict dict_of(AdhesionState adhesion) {
+  nb::dict all;
+  all["time_step"] = adhesion.time_step;
+  for (const AdhesionOf& numbers : adhesion_numbers) {
+    if ((adhesion.*numbers.member).empty()) continue;
+    all[numbers.name] = array_of(std::move(adhesion.*numbers.member));
+  }
+  return all;
+}
+
+nb::dict dict_of(ContactProblem problem) {
+  nb::dict all;
+  for (const MatrixOf& matrix : problem_matrices) {
+    if ((problem.*matrix.member).empty()) continue;
+    all[matrix.name] = tuple_of(std::move(problem.*matrix.member));
+  }
+  for (const NumbersOf& numbers : problem_numbers) {
+    if ((problem.*numbers.member).empty()) continue;
+    all[numbers.name] = array_of(std::move(problem.*numbers.member));
+  }
+  if (!problem.block_start.empty()) all["block_start"] = array_of(std::move(problem.block_start));
+  if (!problem.adhesion.empty()) all["adhesion"] = dict_of(std::move(problem.adhesion));
+  return all;
+}
+
+ContactOptions options_of(const std::string& law,
+                          const std::string& rule,
+                          const std::string& method,
+                          const std::string& measure,
+                          double tolerance,
+                          std::int64_t max_sweeps,
+                          double recovery_speed,
+                          double max_seconds,
+                          const std::string& backend,
+                          int device,
+                          int threads) {
+  ContactOptions options;
+  options.law = choice<FrictionLaw>("law", law);
+  options.rule = choice<AdhesionRule>("rule", rule);
+  options.method = choice<ContactMethod>("method", method);
+  options.measure = choice<ContactMeasure>("measure", measure);
+  options.tolerance = tolerance;
+  options.max_sweeps = max_sweeps;
+  options.recovery_speed = recovery_speed;
+  options.max_seconds = max_seconds;
+  options.backend = choice<Backend>("backend", backend);
+  options.device = device;
+  options.threads = threads;
+  return options;
+}
+
+/// Rows of three numbers per contact.
+NumpyArray rows_of(std::vector<double> numbers) {
+  const std::size_t contacts = numbers.size() / 3;
+  return array_of<double>(std::move(numbers), {contacts, 3});
+}
+
+/// A solver, which keeps its buffers between problems.
+class DictSolver {
+ public:
+  explicit DictSolver(const ContactOptions& options) : solver_(with_progress(options)) {}
+
+  nb::tuple solve(const nb::dict& problem, nb::object progress) {
+    const OneCall call(is_running_, "ContactSolver");
+    const ContactProblem arrays = problem_of(problem);
+    Interruption interruption(std::move(progress));
+    interruption_ = &interruption;  // read within solve() only
+    ContactSolution solution = interruption.run([&] { return solver_.solve(arrays); });
+    interruption.throw_error();
+    const std::string report = to_json(solution.report);
+    return nb::make_tuple(rows_of(std::move(solution.impulse)),
+                          rows_of(std::move(solution.velocity)),
+                          array_of(std::move(solution.body_velocity)), report);
+  }
+
+ private:
+  ContactOptions with_progress(ContactOptions options) {
+    options.progress = [this](const ContactProgress& progress) {
+      return interruption_->go_on(progress.seconds, progress.sweeps);
+    };
+    return options;
+  }
+
+  Interruption* interruption_ = nullptr;
+  ContactSolver solver_;
+  std::atomic<bool> is_running_ = false;
+};
+}  // namespace
+
+void bind_contact(nb::module_& module) {
+  nb::class_<DictSolver>(module, "ContactSolver")
+      .def(
+          "__init__",
+          [](DictSolver* self, const std::string& law, const std::string& rule,
+             const std::string& method, const std::string& measure, double tolerance,
+             std::int64_t max_sweeps, double recovery_speed, double max_seconds,
+             const std::string& backend, int device, int threads) {
+            new (self)
+                DictSolver(options_of(law, rule, method, measure, tolerance, max_sweeps,
+                                      recovery_speed, max_seconds, backend, device, threads));
+          },
+          nb::kw_only(), nb::arg("law"), nb::arg("rule"), nb::arg("method"), nb::arg("measure"),
+          nb::arg("tolerance"), nb::arg("max_sweeps"), nb::arg("recovery_speed"),
+          nb::arg("max_seconds"), nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
+      .def("solve", &DictSolver::solve, nb::arg("problem"), nb::arg("progress").none());
+  module.def(
+      "read_contact_problem",
+      [](const std::string& path) {
+        return dict_of(file_call([&] {
+          const ContactFileHeader header = read_contact_header(path);
+          const bool has_guess = header.has_solution || header.guesses > 0;
+          return read_contact_problem(path, has_guess ? ContactStart::stored : ContactStart::zero);
+        }));
+      },
+      nb::arg("path"));
+  module.def(
+      "write_contact_problem",
+      [](const std::string& path, const nb::dict& problem, const std::string& title,
+         const std::string& description) {
+        const ContactProblem arrays = problem_of(problem);
+        file_call([&] { return write_contact_problem(path, arrays, title, description); });
+      },
+      nb::arg("path"), nb::arg("problem"), nb::arg("title"), nb::arg("description"));
+}
+
+}  // namespace tetwarp::python

@@ -1,0 +1,218 @@
+/// @file bind_files.cpp
+/// Files of volumes, meshes and surfaces.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <tetwarp/scene_io.hpp>
+#include <utility>
+#include <vector>
+
+#include "python/arrays.hpp"
+#include "python/bind.hpp"
+#include "python/choices.hpp"
+#include "python/file_call.hpp"
+
+namespace tetwarp::python {
+namespace {
+nb::dict dict_of(const NiftiFacts& facts) {
+  nb::dict all;
+  all["sform_code"] = facts.sform_code;
+  all["qform_code"] = facts.qform_code;
+  all["xyzt_units"] = facts.xyzt_units;
+  all["intent_code"] = facts.intent_code;
+  all["intent_p"] = nb::make_tuple(facts.intent_p[0], facts.intent_p[1], facts.intent_p[2]);
+  all["intent_name"] = facts.intent_name;
+  all["description"] = facts.description;
+  all["component_axes"] = name_of(facts.component_axes);
+  all["cal_min"] = facts.cal_min;
+  all["cal_max"] = facts.cal_max;
+  all["time_step"] = facts.time_step;
+  return all;
+}
+
+NiftiFacts facts_of(const nb::dict& all) {
+  NiftiFacts facts;
+  facts.sform_code = nb::cast<int>(all["sform_code"]);
+  facts.qform_code = nb::cast<int>(all["qform_code"]);
+  facts.xyzt_units = nb::cast<int>(all["xyzt_units"]);
+  facts.intent_code = nb::cast<int>(all["intent_code"]);
+  for (std::size_t p = 0; p < 3; ++p) facts.intent_p[p] = nb::cast<double>(all["intent_p"][p]);
+  facts.intent_name = nb::cast<std::string>(all["intent_name"]);
+  facts.description = nb::cast<std::string>(all["description"]);
+  facts.component_axes = choice<Axes>("axes", nb::cast<std::string>(all["component_axes"]));
+  facts.cal_min = nb::cast<double>(all["cal_min"]);
+  facts.cal_max = nb::cast<double>(all["cal_max"]);
+  facts.time_step = nb::cast<double>(all["time_step"]);
+  return facts;
+}
+
+nb::object dict_of(const std::optional<NiftiFacts>& facts) {
+  return facts ? nb::object(dict_of(*facts)) : nb::none();
+}
+
+nb::dict volume_header(const std::string& path) {
+  const VolumeHeader header = file_call([&] { return read_volume_header(path); });
+  nb::list arrays;
+  for (const ArrayHeader& array : header.arrays) {
+    nb::dict entry;
+    entry["name"] = array.name;
+    entry["dtype"] = name_of(array.type);
+    entry["components"] = array.components;
+    arrays.append(entry);
+  }
+  nb::dict all;
+  all["grid"] = header.grid;
+  all["arrays"] = arrays;
+  all["active"] = header.active;
+  all["times"] = header.times;
+  all["not_read"] = header.not_read;
+  return all;
+}
+
+/// Samples, grid, name, header of NIfTI or None.
+nb::tuple read_one_volume(const std::string& path,
+                          const std::string& array,
+                          std::int64_t step,
+                          const std::string& axes,
+                          bool are_labels) {
+  VolumeReadOptions options;
+  options.axes = choice<Axes>("axes", axes);
+  options.are_labels = are_labels;
+  std::optional<NiftiFacts> facts;
+  Volume volume = file_call([&] {
+    Volume read = read_volume(path, array, step, options);
+    for (const ArrayHeader& header : read_volume_header(path, options).arrays) {
+      if (header.name == read.name) facts = header.nifti;
+    }
+    return read;
+  });
+  const Grid grid = volume.grid;
+  const std::string name = volume.name;
+  return nb::make_tuple(array_of(std::move(volume)), grid, name, dict_of(facts));
+}
+
+/// @param arrays  a dict per array: name, nifti (dict or None), is_itk_field, samples (a list, one
+///                array per step)
+void write_volume_file(const std::string& path,
+                       const Grid& grid,
+                       const std::vector<nb::dict>& arrays,
+                       const std::vector<double>& times,
+                       int compress) {
+  std::vector<ArrayHeader> headers;
+  std::vector<std::vector<InSamples>> samples;  // [array][step]
+  for (const nb::dict& array : arrays) {
+    samples.push_back(nb::cast<std::vector<InSamples>>(array["samples"], false));
+    const VolumeView first = view_of(samples.back().front(), grid);
+    ArrayHeader header{nb::cast<std::string>(array["name"]), first.type, first.components};
+    header.nifti = array["nifti"].is_none() ? default_nifti_facts(header.components)
+                                            : facts_of(nb::cast<nb::dict>(array["nifti"]));
+    header.is_itk_field = nb::cast<bool>(array["is_itk_field"]);
+    if (header.is_itk_field) header.nifti->component_axes = Axes::lps;
+    headers.push_back(header);
+  }
+  VolumeWriteOptions options;
+  options.compress = compress;
+  file_call([&] {
+    BlockVolumeWriter writer(path, grid, headers, options, !times.empty(), ChunkShape::rows);
+    const Region whole{{0, 0, 0}, grid.dims};
+    for (std::size_t step = 0; step < samples.front().size(); ++step) {
+      if (!times.empty()) writer.begin_step(times[step]);
+      for (std::size_t array = 0; array < samples.size(); ++array) {
+        writer.write(array, whole, samples[array][step].data());
+      }
+    }
+    return writer.finish().bytes;
+  });
+}
+
+/// A MeshReader, whose calls are file calls.
+class MeshFile {
+ public:
+  MeshFile(const std::string& path, std::int64_t rest_step, const std::string& axes)
+      : reader_(open(path, rest_step, axes)) {}
+
+  const MeshReader& reader() const { return reader_; }
+
+ private:
+  static MeshReader open(const std::string& path, std::int64_t rest_step, const std::string& axes) {
+    MeshReadOptions options;
+    options.rest_step = rest_step;
+    options.import.axes = choice<Axes>("axes", axes);
+    return file_call([&] { return MeshReader(path, options); });
+  }
+
+  MeshReader reader_;
+};
+
+nb::tuple mesh_arrays(const MeshFile& file) {
+  Mesh mesh = file.reader().mesh();
+  return nb::make_tuple(array_of(std::move(mesh.rest_positions)), array_of(std::move(mesh.tets)),
+                        array_of(std::move(mesh.hexes)));
+}
+
+/// @param displacements  [steps] of [nodes][3]
+void write_mesh_file(const std::string& path,
+                     const InPoints& points,
+                     const InTets& tets,
+                     const InHexes& hexes,
+                     const std::vector<InPoints>& displacements,
+                     const std::vector<double>& times) {
+  const Mesh mesh = mesh_of(points, tets, hexes);
+  std::vector<std::vector<Point3>> steps;
+  steps.reserve(displacements.size());
+  for (const InPoints& step : displacements) steps.push_back(points_of(step));
+  file_call([&] {
+    write_mesh(path, mesh, steps, times);
+    return true;
+  });
+}
+}  // namespace
+
+void bind_files(nb::module_& module) {
+  module.def(
+      "kind_of",
+      [](const std::string& path) { return name_of(file_call([&] { return kind_of(path); })); },
+      nb::arg("path"));
+  module.def("has_mesh_extension", &has_mesh_extension, nb::arg("path"));
+  module.def("has_surface_extension", &has_surface_extension, nb::arg("path"));
+  module.def("volume_header", &volume_header, nb::arg("path"));
+  module.def("read_volume", &read_one_volume, nb::arg("path"), nb::arg("array"), nb::arg("step"),
+             nb::arg("axes"), nb::arg("are_labels"));
+  module.def("write_volumes", &write_volume_file, nb::arg("path"), nb::arg("grid"),
+             nb::arg("arrays"), nb::arg("times"), nb::arg("compress"));
+  nb::class_<MeshFile>(module, "MeshFile")
+      .def(nb::init<const std::string&, std::int64_t, const std::string&>(), nb::arg("path"),
+           nb::arg("rest_step"), nb::arg("axes"))
+      .def("mesh", &mesh_arrays)
+      .def_prop_ro("times", [](const MeshFile& file) { return file.reader().header().times; })
+      .def_prop_ro("not_read", [](const MeshFile& file) { return file.reader().header().not_read; })
+      .def(
+          "read_step",
+          [](const MeshFile& file, std::int64_t step) {
+            return array_of(file_call([&] { return file.reader().read_step(step); }));
+          },
+          nb::arg("step"));
+  module.def("write_mesh", &write_mesh_file, nb::arg("path"), nb::arg("points"), nb::arg("tets"),
+             nb::arg("hexes"), nb::arg("displacements"), nb::arg("times"));
+  module.def(
+      "read_surface",
+      [](const std::string& path) {
+        Surface surface = file_call([&] { return read_surface(path); });
+        return nb::make_tuple(array_of(std::move(surface.points)),
+                              array_of(std::move(surface.triangles)));
+      },
+      nb::arg("path"));
+  module.def(
+      "write_surface",
+      [](const std::string& path, const InPoints& points, const InTriangles& triangles) {
+        const Surface surface{points_of(points), triangles_of(triangles)};
+        file_call([&] { write_surface(path, surface); });
+      },
+      nb::arg("path"), nb::arg("points"), nb::arg("triangles"));
+}
+
+}  // namespace tetwarp::python

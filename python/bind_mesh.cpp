@@ -1,0 +1,98 @@
+/// @file bind_mesh.cpp
+/// Lattices, surfaces, procedural deformations, owners of points.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <cstdint>
+#include <optional>
+#include <tetwarp/make.hpp>
+#include <tetwarp/surface.hpp>
+
+#include "python/arrays.hpp"
+#include "python/bind.hpp"
+#include "python/choices.hpp"
+#include "python/point_map.hpp"
+
+namespace tetwarp::python {
+namespace {
+nb::tuple lattice_mesh(const InSamples& samples,
+                       const Grid& grid,
+                       int cells,
+                       std::optional<double> threshold,
+                       bool hexahedra) {
+  Mesh mesh;
+  {
+    const nb::gil_scoped_release release;
+    mesh = make_lattice_mesh(volume_of(samples, grid, "volume"), {cells, threshold, hexahedra});
+  }
+  nb::object cells_array = hexahedra ? nb::cast(array_of(std::move(mesh.hexes)))
+                                     : nb::cast(array_of(std::move(mesh.tets)));
+  return nb::make_tuple(array_of(std::move(mesh.rest_positions)), cells_array);
+}
+
+NumpyArray deform(const InPoints& points,
+                  const InTets& tets,
+                  const InHexes& hexes,
+                  const std::string& kind,
+                  double amount,
+                  int axis,
+                  std::uint64_t seed,
+                  const Point3& offset,
+                  double time) {
+  const Mesh mesh = mesh_of(points, tets, hexes);
+  const DeformOptions options{.kind = choice<Deformation>("kind", kind),
+                              .amount = amount,
+                              .axis = axis,
+                              .seed = seed,
+                              .offset = offset};
+  return array_of(deform_positions(mesh, options, time));
+}
+
+nb::tuple surface_arrays(Surface surface) {
+  return nb::make_tuple(array_of(std::move(surface.points)),
+                        array_of(std::move(surface.triangles)));
+}
+}  // namespace
+
+void bind_mesh(nb::module_& module) {
+  module.def("lattice_mesh", &lattice_mesh, nb::arg("samples"), nb::arg("grid"), nb::arg("cells"),
+             nb::arg("threshold").none(), nb::arg("hexahedra"));
+  module.def("deform", &deform, nb::arg("points"), nb::arg("tets"), nb::arg("hexes"),
+             nb::arg("kind"), nb::arg("amount"), nb::arg("axis"), nb::arg("seed"),
+             nb::arg("offset"), nb::arg("time"));
+  module.def(
+      "boundary_surface",
+      [](const InPoints& points, const InTets& tets, const InHexes& hexes) {
+        return surface_arrays(boundary_surface(mesh_of(points, tets, hexes)));
+      },
+      nb::arg("points"), nb::arg("tets"), nb::arg("hexes"));
+  module.def(
+      "isosurface",
+      [](const InSamples& samples, const Grid& grid, double value,
+         std::optional<std::int64_t> triangles) {
+        Surface surface;
+        {
+          const nb::gil_scoped_release release;
+          surface = make_isosurface(volume_of(samples, grid, "volume"), value, triangles);
+        }
+        return surface_arrays(std::move(surface));
+      },
+      nb::arg("samples"), nb::arg("grid"), nb::arg("value"), nb::arg("triangles").none());
+  module.def(
+      "map_points",
+      [](const InPoints& points, const Grid& grid, const InPoints& from, const InTets& tets,
+         const InPoints& to) {
+        MappedPoints mapped;
+        {
+          const nb::gil_scoped_release release;
+          mapped =
+              map_points(points_of(points), grid, points_of(from), tets_of(tets), points_of(to));
+        }
+        return nb::make_tuple(array_of(std::move(mapped.points)),
+                              array_of(std::move(mapped.owners)));
+      },
+      nb::arg("points"), nb::arg("grid"), nb::arg("start"), nb::arg("tets"), nb::arg("end"));
+}
+
+}  // namespace tetwarp::python

@@ -1,0 +1,167 @@
+/// @file bind_warp.cpp
+/// The Warper.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <tetwarp/warp.hpp>
+#include <utility>
+#include <vector>
+
+#include "host/base/report_fields.hpp"
+#include "python/arrays.hpp"
+#include "python/bind.hpp"
+#include "python/choices.hpp"
+#include "python/interruption.hpp"
+
+namespace tetwarp::python {
+namespace {
+/// A Warper and the arrays of its sources, which it reads in place.
+class ArrayWarper {
+ public:
+  ArrayWarper(std::vector<InSamples> sources,
+              const Grid& grid,
+              const Mesh& mesh,
+              const WarpOptions& options)
+      : sources_(std::move(sources)), warper_(make_warper(grid, mesh, options)) {}
+
+  StepReport step(const PositionsView& deformed, const WarpTarget& target, nb::object progress) {
+    const OneCall call(is_running_, "Warper");
+    Interruption interruption(std::move(progress));
+    return interruption.run([&] {
+      return warper_.step(deformed, target,
+                          [&](double fraction) { return interruption.go_on(fraction); });
+    });
+  }
+
+  const Warper& warper() const { return warper_; }
+
+ private:
+  Warper make_warper(const Grid& grid, const Mesh& mesh, const WarpOptions& options) const {
+    std::vector<VolumeView> views;
+    for (const InSamples& samples : sources_) views.push_back(view_of(samples, grid));
+    const nb::gil_scoped_release release;
+    return {views, mesh, options};
+  }
+
+  std::vector<InSamples> sources_;
+  Warper warper_;
+  std::atomic<bool> is_running_ = false;
+};
+
+/// An array of `arrays`, null if there is none of this name.
+template <class T>
+T* data_of(const nb::dict& arrays, const char* name) {
+  if (!arrays.contains(name)) return nullptr;
+  return nb::cast<nb::ndarray<T, nb::c_contig, nb::device::cpu>>(arrays[name], false).data();
+}
+
+WarpTarget target_of(const std::vector<void*>& volumes,
+                     const nb::dict& extras,
+                     bool holds_previous) {
+  WarpTarget target{.volumes = volumes};
+  target.mask = data_of<std::uint8_t>(extras, "mask");
+  target.owner = data_of<std::int32_t>(extras, "owner");
+  target.fields = {.displacement = data_of<float>(extras, "displacement"),
+                   .jacobian = data_of<float>(extras, "jacobian"),
+                   .gradient = data_of<float>(extras, "gradient"),
+                   .strain = data_of<float>(extras, "strain"),
+                   .forward = data_of<float>(extras, "forward")};
+  target.holds_previous = holds_previous;
+  return target;
+}
+
+nb::dict dict_of(const Totals& totals) {
+  nb::dict all;
+  all["before"] = totals.before;
+  all["after"] = totals.after;
+  all["rounding"] = totals.rounding;
+  all["clipping"] = totals.clipping;
+  return all;
+}
+
+nb::dict report_of(const Report& whole, const StepReport& step) {
+  nb::dict counts, timings, report;
+  for (const auto& field : count_fields) counts[field.name] = step.counts.*field.member;
+  for (const auto& field : timing_fields) timings[field.name] = step.timings.*field.member;
+  report["backend"] = name_of(whole.backend);
+  report["backend_reason"] = whole.backend_reason;
+  report["device"] = whole.device;
+  report["threads"] = whole.threads;
+  report["position_quantum"] = whole.position_quantum;
+  report["step"] = step.step;
+  report["counts"] = counts;
+  report["timings"] = timings;
+  report["totals"] = dict_of(step.totals);
+  return report;
+}
+
+nb::dict run_step(ArrayWarper& warper,
+                  const InPoints& deformed,
+                  const std::vector<OutSamples>& volumes,
+                  const nb::dict& extras,
+                  bool holds_previous,
+                  nb::object progress) {
+  std::vector<void*> samples;
+  samples.reserve(volumes.size());
+  for (const OutSamples& volume : volumes) samples.push_back(volume.data());
+  const PositionsView positions(deformed.data(), static_cast<std::int64_t>(deformed.shape(0)),
+                                Memory::host);
+  const StepReport step =
+      warper.step(positions, target_of(samples, extras, holds_previous), std::move(progress));
+  return report_of(warper.warper().report(), step);
+}
+
+void make_array_warper(ArrayWarper* self,
+                       std::vector<InSamples> sources,
+                       const Grid& grid,
+                       const InPoints& points,
+                       const InTets& tets,
+                       const InHexes& hexes,
+                       const std::string& interpolator,
+                       const std::string& overshoot,
+                       bool antialias,
+                       const std::string& intensity,
+                       const std::vector<std::string>& quantities,
+                       const std::string& outside,
+                       double default_value,
+                       std::optional<Grid> output_grid,
+                       const std::string& backend,
+                       int device,
+                       int threads) {
+  WarpOptions options{.filter = choice<Filter>("interpolator", interpolator),
+                      .overshoot = choice<Overshoot>("overshoot", overshoot),
+                      .antialias = antialias,
+                      .intensity = choice<Intensity>("intensity", intensity),
+                      .outside = choice<Outside>("outside", outside),
+                      .background = default_value,
+                      .output_grid = output_grid,
+                      .backend = choice<Backend>("backend", backend),
+                      .device = device,
+                      .threads = threads};
+  for (const std::string& word : quantities) {
+    options.quantities.push_back(choice<Quantity>("quantity", word));
+  }
+  new (self) ArrayWarper(std::move(sources), grid, mesh_of(points, tets, hexes), options);
+}
+}  // namespace
+
+void bind_warp(nb::module_& module) {
+  nb::class_<ArrayWarper>(module, "Warper")
+      .def("__init__", &make_array_warper, nb::arg("sources"), nb::arg("grid"), nb::arg("points"),
+           nb::arg("tets"), nb::arg("hexes"), nb::kw_only(), nb::arg("interpolator"),
+           nb::arg("overshoot"), nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"),
+           nb::arg("outside"), nb::arg("default_value"), nb::arg("output_grid").none(),
+           nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
+      .def_prop_ro("output_grid",
+                   [](const ArrayWarper& self) { return self.warper().output_grid(); })
+      .def("report", [](const ArrayWarper& self) { return to_json(self.warper().report()); })
+      .def("step", &run_step, nb::arg("deformed"), nb::arg("volumes"), nb::arg("extras"),
+           nb::arg("holds_previous"), nb::arg("progress").none());
+}
+
+}  // namespace tetwarp::python

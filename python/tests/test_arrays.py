@@ -1,0 +1,211 @@
+"""Arrays are used in place, live as long as they are needed, and wrong ones are named."""
+
+import gc
+import pickle
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+
+def test_outputs_are_written_into_the_callers_arrays(volume, mesh, twisted):
+    out = np.full(volume.shape, 5, np.float32)
+    address = out.ctypes.data
+
+    result = tetwarp.warp(volume, *mesh, twisted, out=out)
+
+    assert result.volume is out and out.ctypes.data == address
+    assert np.array_equal(out, tetwarp.warp(volume, *mesh, twisted).volume)
+
+
+def test_sources_are_read_in_place(mesh, twisted):
+    samples = np.random.default_rng(5).random((20, 24, 32), np.float32)
+    grid = tetwarp.phantom(shape=samples.shape).grid
+    with tetwarp.Warper(tetwarp.Volume(samples, grid), *mesh) as warper:
+        assert warper._arrays[0] is samples
+        samples *= 2  # not allowed to callers; shows that the Warper has no copy
+
+        result = warper(twisted)
+
+    expected = tetwarp.warp(tetwarp.Volume(samples, grid), *mesh, twisted)
+    assert np.array_equal(result.volume, expected.volume)
+
+
+def test_strides_only_decide_whether_a_copy_is_made(volume, mesh, twisted):
+    expected = tetwarp.warp(volume, *mesh, twisted).volume
+    fortran = np.asfortranarray(volume.array)
+    spread = np.zeros(tuple(2 * n for n in volume.shape), np.float32)[::2, ::2, ::2]
+    spread[...] = volume.array
+    swapped = volume.array.astype(volume.dtype.newbyteorder())
+    read_only = volume.array.view()
+    read_only.flags.writeable = False
+    rows = np.zeros((len(mesh.points), 6))[:, ::2]
+    rows[...] = twisted
+
+    for samples in (fortran, spread, swapped, read_only):
+        result = tetwarp.warp(tetwarp.Volume(samples, volume.grid), *mesh, rows)
+        assert np.array_equal(result.volume, expected)
+
+
+@pytest.mark.parametrize("dtype", ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"])
+def test_every_pixel_type_keeps_its_type(dtype, volume, mesh):
+    samples = (100 * volume.array).astype(dtype)
+    source = tetwarp.Volume(samples, volume.grid)
+
+    result = tetwarp.warp(source, *mesh, mesh.points, interpolator="nearest")
+
+    assert result.volume.dtype == samples.dtype
+    assert np.array_equal(result.volume, samples)  # at rest every voxel is itself
+
+
+def test_components_are_kept(volume, mesh, twisted):
+    samples = np.stack([volume.array, 2 * volume.array], axis=-1)
+
+    result = tetwarp.warp(tetwarp.Volume(samples, volume.grid), *mesh, twisted)
+
+    assert np.array_equal(result.volume[..., 0],
+                          tetwarp.warp(volume, *mesh, twisted).volume)
+
+
+def test_several_volumes_are_warped_together(volume, mesh, twisted):
+    labels = tetwarp.Volume((volume.array > 0.3).astype(np.uint8), volume.grid)
+
+    result = tetwarp.warp([volume, labels], *mesh, twisted, interpolator="nearest")
+
+    assert [array.dtype for array in result.volumes] == [np.float32, np.uint8]
+    alone = tetwarp.warp(labels, *mesh, twisted, interpolator="nearest")
+    assert np.array_equal(result.volumes[1], alone.volume)
+
+
+def test_results_outlive_what_made_them(volume, mesh, twisted):
+    warper = tetwarp.Warper(volume.array.copy(), *mesh, affine=volume.affine)
+    gc.collect()  # the caller keeps no reference to the samples
+    result = warper(twisted)
+    expected = result.volume.copy()
+    del warper
+    gc.collect()
+    assert np.array_equal(result.volume, expected)
+
+    samples = tetwarp.phantom(shape=(20, 24, 32)).array
+    gc.collect()
+    assert np.array_equal(samples, volume.array)
+
+
+def test_arrays_of_the_library_are_not_copied():
+    samples = tetwarp.phantom(shape=(20, 24, 32)).array
+
+    assert not samples.flags.owndata and samples.flags.writeable
+
+
+def test_plain_results_are_pickled(volume, mesh, twisted):
+    result = tetwarp.warp(volume, *mesh, twisted, outputs=("mask", "jacobian"))
+
+    again = pickle.loads(pickle.dumps(result))
+
+    assert np.array_equal(again.volume, result.volume) and again.grid == result.grid
+    assert np.array_equal(again.jacobian, result.jacobian)
+    assert again.report == result.report
+    assert pickle.loads(pickle.dumps(mesh)).points.shape == mesh.points.shape
+    assert np.array_equal(pickle.loads(pickle.dumps(volume)).array, volume.array)
+    with pytest.raises(TypeError):
+        pickle.dumps(tetwarp.Warper(volume, *mesh))
+
+
+def _warp(source, mesh, **changes):
+    arguments = dict(volume=source, rest=mesh.points, cells=mesh.cells, deformed=mesh.points)
+    return tetwarp.warp(**{**arguments, **changes})
+
+
+@pytest.mark.parametrize("name, change, text", [
+    ("volume", np.zeros((4, 4)), r"volume: expected shape \(z, y, x\).*got \(4, 4\)"),
+    ("volume", np.zeros((4, 4, 4), bool), r"volume: .*got bool; use .view\(numpy.uint8\)"),
+    ("volume", np.zeros((4, 4, 4), complex), "volume: .*got complex128"),
+    ("volume", np.zeros((4, 4, 4), np.float16), "volume: .*got float16"),
+    ("volume", np.zeros((4, 4, 4, 10)), "volume: expected 1 to 9 components"),
+    ("volume", np.zeros((4, 0, 4)), "volume: expected at least one voxel"),
+    ("volume", [], "volume: expected at least one volume"),
+    ("rest", np.zeros((5, 2)), r"rest: expected shape \(n, 3\).*got \(5, 2\)"),
+    ("rest", "text", "rest: expected an array of numbers"),
+    ("cells", [(0, 1, 2)], r"cells: expected shape \(m, 4\).*got \(1, 3\)"),
+    ("cells", [(0.0, 1, 2, 3)], "cells: expected integers.*got float64"),
+    ("cells", [(0, 1, 2, -1)], "cells: expected numbers of nodes from 0 to .*found -1"),
+    ("cells", [(0, 1, 2, 2**40)], f"cells: expected numbers .*found {2**40}"),
+    ("cells", np.zeros((0, 4), int), "cells: expected at least one cell"),
+    ("deformed", np.zeros((3, 3)), "deformed: expected .* rows, one per node, got 3"),
+    ("interpolator", "spline", "interpolator: 'spline' is not one of linear, nearest"),
+    ("outside", "zero", "outside: 'zero' is not one of background, identity"),
+    ("backend", "gpu", "backend: 'gpu' is not one of auto, cuda, cpu"),
+    ("quantity", ["rotate", "rotate"], "quantity: expected 1 words, one per volume, got 2"),
+    ("reference", "grid", "reference: expected a tetwarp.Grid.*got str"),
+    ("outputs", ("mask", "hull"), "outputs: 'hull' is not one of mask, owner"),
+    ("out", np.zeros((3, 3, 3), np.float32), r"out: expected shape \(20, 24, 32\) of float32"),
+    ("out", np.zeros((20, 24, 32)), "out: expected .* of float32, got .* of float64"),
+    ("out", [1], "out: expected a numpy array of float32"),
+    ("out", np.zeros((20, 24, 64), np.float32)[..., ::2], "out: expected an array in C order"),
+    ("spacing", (1, 1, 1), "volume: a Volume has a grid; leave out spacing"),
+    ("threads", -1, "threads"),
+    ("default_value", "x", "default_value: expected a number, got 'x'"),
+    ("deformed", np.full((1, 3), np.nan), "deformed: expected .* rows"),
+])
+def test_errors_name_the_argument(name, change, text, volume, mesh):
+    with pytest.raises(ValueError, match=text):
+        _warp(volume, mesh, **{name: change})
+
+
+def test_positions_must_be_finite(volume, mesh):
+    broken = mesh.points.copy()
+    broken[3, 1] = np.inf
+    for name in ("rest", "deformed"):
+        with pytest.raises(ValueError, match=f"{name}: expected finite positions, row 3 is not"):
+            _warp(volume, mesh, **{name: broken})
+
+
+def test_forward_fields_are_on_the_grid_of_the_source(volume, mesh):
+    with pytest.raises(ValueError, match="outputs: 'forward' is on the grid of the source"):
+        _warp(volume, mesh, outputs="forward", reference=tetwarp.Grid((3, 3, 3)))
+
+
+def test_outputs_must_be_writable_and_apart_from_sources(volume, mesh):
+    out = np.zeros(volume.shape, np.float32)
+    out.flags.writeable = False
+    with pytest.raises(ValueError, match="out: expected a writable array"):
+        _warp(volume, mesh, out=out)
+    with pytest.raises(ValueError, match="out: shares memory with a source"):
+        _warp(volume, mesh, out=volume.array)
+
+
+@pytest.mark.parametrize("keywords, text", [
+    (dict(spacing=(1, 0, 1)), "spacing"),
+    (dict(spacing=(1, 1)), "spacing: expected three numbers x, y, z, got 2"),
+    (dict(origin=(0, 0, float("nan"))), "origin"),
+    (dict(direction=np.zeros((3, 3))), "direction"),
+    (dict(direction=np.eye(2)), "direction: expected 3 x 3 numbers, got 4"),
+    (dict(shape=(4, 0, 6)), "shape: expected 1 to .* voxels along each axis"),
+    (dict(shape=(4, 6)), "shape: expected three numbers"),
+])
+def test_grids_are_checked(keywords, text):
+    with pytest.raises(ValueError, match=text):
+        tetwarp.Grid(**{"shape": (4, 5, 6), **keywords})
+
+
+def test_grids_have_the_affine_matrix_of_nibabel():
+    affine = np.array([(-2, 0, 0, 90), (0, 0, 3, -126), (0, 2.5, 0, -72), (0, 0, 0, 1.0)])
+
+    grid = tetwarp.Grid.from_affine((4, 5, 6), affine)
+
+    assert np.allclose(grid.affine, affine)
+    assert np.allclose(grid.points()[2, 3, 4], (affine @ (4, 3, 2, 1))[:3])
+    with pytest.raises(ValueError, match="affine: give either affine"):
+        tetwarp.warp(np.zeros((4, 5, 6)), np.eye(4, 3), [(0, 1, 2, 3)], np.eye(4, 3),
+                     affine=affine, origin=(0, 0, 0))
+
+
+def test_images_of_nibabel_are_references(volume, mesh, twisted):
+    nibabel = pytest.importorskip("nibabel")
+    image = nibabel.Nifti1Image(np.zeros((16, 12, 10), np.uint8), np.diag([20.0, 20, 30, 1]))
+
+    result = tetwarp.warp(volume, *mesh, twisted, reference=image)
+
+    assert result.volume.shape == (10, 12, 16)
+    assert np.allclose(result.grid.affine, image.affine)

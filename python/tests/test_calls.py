@@ -1,0 +1,105 @@
+"""Long calls: progress, Ctrl-C, threads, objects that are closed."""
+
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+
+@pytest.fixture
+def slow():
+    """A Warper and positions whose step takes about a second."""
+    volume = tetwarp.phantom(shape=(150, 150, 150))
+    mesh = tetwarp.lattice_mesh(volume, cells=6)
+    warper = tetwarp.Warper(volume, *mesh, interpolator="lanczos", threads=1, backend="cpu")
+    return warper, tetwarp.deform(*mesh, amount=0.5)
+
+
+def test_progress_grows_to_one(volume, mesh, twisted):
+    seen = []
+
+    tetwarp.warp(volume, *mesh, twisted, progress=seen.append)
+
+    assert seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 1
+
+
+def test_progress_ends_a_step(volume, mesh, twisted):
+    with tetwarp.Warper(volume, *mesh) as warper:
+        with pytest.raises(tetwarp.Cancelled):
+            warper(twisted, progress=lambda fraction: False)
+
+        again = warper(twisted)
+
+    assert np.array_equal(again.volume, tetwarp.warp(volume, *mesh, twisted).volume)
+
+
+def test_an_exception_of_the_callback_arrives(volume, mesh, twisted):
+    def fail(fraction):
+        raise ZeroDivisionError("mine")
+
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        tetwarp.warp(volume, *mesh, twisted, progress=fail)
+
+
+def test_ctrl_c_ends_a_step_before_its_end(slow):
+    warper, deformed = slow
+    start = time.monotonic()
+    warper(deformed)
+    whole = time.monotonic() - start
+    previous = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.1 * whole)
+    start = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            warper(deformed)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, previous)
+
+    assert time.monotonic() - start < 0.7 * whole
+
+
+def test_other_threads_run_during_a_step(slow):
+    warper, deformed = slow
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.wait(0.005):
+            ticks.append(time.monotonic())
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.monotonic()
+    warper(deformed)
+    end = time.monotonic()
+    stop.set()
+    thread.join()
+
+    assert sum(start < tick < end for tick in ticks) >= 5
+
+
+def test_a_second_call_of_the_same_object_is_refused(volume, mesh, twisted):
+    with tetwarp.Warper(volume, *mesh) as warper:
+        with pytest.raises(RuntimeError, match="Warper: a call of this object is running"):
+            warper(twisted, progress=lambda fraction: warper(twisted))
+
+
+def test_a_closed_warper_says_so(volume, mesh, twisted):
+    with tetwarp.Warper(volume, *mesh) as warper:
+        assert "20, 24, 32" in repr(warper)
+
+    with pytest.raises(RuntimeError, match="Warper: it is closed"):
+        warper(twisted)
+    assert "closed" in repr(warper)
+
+
+def test_results_say_what_they_are(volume, mesh, twisted):
+    result = tetwarp.warp(volume, *mesh, twisted, outputs="mask")
+
+    assert "float32, with mask; " in repr(result) and "% of 15360 voxels" in repr(result)
+    with pytest.raises(AttributeError, match=r"ask for it by outputs=\('owner',\)"):
+        result.owner

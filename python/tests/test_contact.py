@@ -1,0 +1,92 @@
+"""Contact problems in and out."""
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+SYSTEM = np.diag([2.0, 2, 2, 1, 1, 1])
+JACOBIAN = np.array([(1, 0, 0, -1, 0, 0), (0, 1, 0, 0, -1, 0), (0, 0, 1, 0, 0, -1)], float)
+GLOBAL = dict(system=SYSTEM, jacobian=JACOBIAN, load=[-3, 1, 0, 0, 0, 0],
+              velocity_offset=[0, 0, 0], friction=[0.4])
+
+
+def test_a_solution_obeys_the_equations():
+    solution = tetwarp.solve_contacts(**GLOBAL)
+
+    assert solution.converged and solution.residual < 1e-6
+    r, v = solution.impulse.ravel(), solution.body_velocity
+    assert np.allclose(SYSTEM @ v, JACOBIAN.T @ r + GLOBAL["load"])
+    assert np.allclose(JACOBIAN @ v, solution.velocity.ravel())
+    assert r[0] > 0 and np.hypot(r[1], r[2]) <= 0.4 * r[0] + 1e-9
+    assert "1 contacts, converged" in repr(solution)
+
+
+def test_matrices_may_be_sparse_in_any_form():
+    sparse = pytest.importorskip("scipy.sparse")
+    expected = tetwarp.solve_contacts(**GLOBAL).impulse
+
+    for make in (sparse.csr_array, sparse.csc_matrix, sparse.coo_array):
+        problem = {**GLOBAL, "system": make(SYSTEM), "jacobian": make(JACOBIAN)}
+        assert np.array_equal(tetwarp.solve_contacts(**problem).impulse, expected)
+    rows = sparse.csr_array(JACOBIAN)
+    parts = (rows.data, rows.indices, rows.indptr, rows.shape)
+    problem = {**GLOBAL, "jacobian": parts}
+    assert np.array_equal(tetwarp.solve_contacts(**problem).impulse, expected)
+
+
+def test_matrices_of_files_go_to_scipy(tmp_path):
+    pytest.importorskip("scipy.sparse")
+    tetwarp.write(tmp_path / "a.h5", tetwarp.ContactProblem(**GLOBAL))
+
+    problem = tetwarp.read(tmp_path / "a.h5")
+
+    assert problem.contact_count == 1 and "global" in repr(problem)
+    assert np.array_equal(problem.jacobian.tocsr().toarray(), JACOBIAN)
+    assert np.array_equal(tetwarp.solve_contacts(problem).impulse,
+                          tetwarp.solve_contacts(**GLOBAL).impulse)
+
+
+def test_adhesion_holds_what_is_pulled():
+    pulled = dict(delassus=np.eye(3), free_velocity=[0.01, 0, 0], friction=[0.5])
+    adhesion = dict(time_step=0.01, area=[1.0], stiffness=[1e6], intensity=[1.0])
+
+    assert tetwarp.solve_contacts(**pulled).impulse[0, 0] == 0
+    assert tetwarp.solve_contacts(**pulled, adhesion=adhesion).impulse[0, 0] < 0
+
+
+def test_a_solver_solves_a_series():
+    solver = tetwarp.ContactSolver(tolerance=1e-9)
+    for push in (1.0, 2.0, 4.0):
+        problem = tetwarp.ContactProblem(delassus=np.eye(3), free_velocity=[-push, 0, 0],
+                                         friction=[0.5])
+        assert solver.solve(problem).impulse[0, 0] == pytest.approx(push)
+
+
+def test_a_callback_ends_a_solve_and_its_errors_arrive():
+    def fail(seconds, sweeps):
+        raise ZeroDivisionError("mine")
+
+    random = np.random.default_rng(2)
+    factor = random.random((90, 90))
+    problem = tetwarp.ContactProblem(delassus=factor @ factor.T + 0.01 * np.eye(90),
+                                     free_velocity=-random.random(90), friction=np.full(30, 0.9))
+    ended = tetwarp.solve_contacts(problem, progress=lambda *_: False, tolerance=1e-14)
+    assert not ended.converged
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        tetwarp.solve_contacts(problem, progress=fail, tolerance=1e-14)
+
+
+@pytest.mark.parametrize("change, text", [
+    (dict(friction=[-1]), "friction"),
+    (dict(load=[1, 2]), "load"),
+    (dict(system=np.zeros((2, 2, 2))), "system: expected a sparse matrix"),
+    (dict(jacobian=([1.0], [0, 1], [0, 1], (1, 1))), "jacobian.indices: expected 1, got 2"),
+    (dict(jacobian=([1.0], [0], [0, 1], (3, 6))), "jacobian.indptr: expected 4, got 2"),
+    (dict(adhesion=dict(area=[1])), "adhesion: expected time_step"),
+    (dict(law="square"), "law: 'square' is not one of cone, pyramid"),
+    (dict(tolerance=-1), "tolerance"),
+])
+def test_errors_name_the_member(change, text):
+    with pytest.raises(ValueError, match=text):
+        tetwarp.solve_contacts(**{**GLOBAL, **change})

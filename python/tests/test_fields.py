@@ -1,0 +1,122 @@
+"""Fields of deformations, owners, and points."""
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+
+def test_owners_are_those_of_the_warp(volume, mesh, twisted):
+    owners = tetwarp.rasterize(twisted, mesh.cells, reference=volume)
+
+    expected = tetwarp.warp(volume, *mesh, twisted, outputs="owner").owner
+    assert np.array_equal(owners, expected)
+    assert owners.min() == -1 and owners.max() > 50
+
+
+def test_closed_shapes_own_their_faces(single_tet):
+    points, cells = single_tet
+
+    owners = tetwarp.rasterize(points, cells, shape=(4, 4, 4))
+
+    k, j, i = np.indices((4, 4, 4))
+    assert np.array_equal(owners == 0, i + j + k <= 3)
+
+
+def test_fields_are_those_of_the_warp(volume, mesh, twisted):
+    names = ("displacement", "jacobian", "strain", "forward", "mask")
+    result = tetwarp.warp(volume, *mesh, twisted, outputs=names)
+
+    back = tetwarp.displacement_field(*mesh, twisted, reference=volume)
+    ahead = tetwarp.displacement_field(*mesh, twisted, reference=volume, convention="modeling")
+    jacobian = tetwarp.jacobian_determinant(*mesh, twisted, reference=volume.grid)
+    strain = tetwarp.strain(*mesh, twisted, reference=result)
+
+    assert np.array_equal(back, result.displacement)
+    assert np.array_equal(back.mask, result.mask == 1)
+    assert np.array_equal(ahead, result.forward)
+    assert np.array_equal(jacobian, result.jacobian)
+    assert np.array_equal(strain, result.strain)
+    assert "tetwarp_jacobian" in repr(jacobian)
+
+
+def test_the_mask_of_a_modeling_field_is_of_the_rest_mesh(single_tet):
+    points, cells = single_tet
+
+    field = tetwarp.displacement_field(points, cells, points + 50, shape=(4, 4, 4),
+                                       convention="modeling")
+
+    assert field.mask.sum() == 20
+    assert np.array_equal(field.values[field.mask], np.full((20, 3), 50, np.float32))
+
+
+def test_points_have_the_owners_of_the_warp(volume, mesh, twisted):
+    owners = tetwarp.rasterize(twisted, mesh.cells, reference=volume)
+    centres = volume.grid.points().reshape(-1, 3)
+
+    rest, found = tetwarp.transform_points(centres, *mesh, twisted, inverse=True,
+                                           reference=volume, return_owners=True)
+
+    assert np.array_equal(found.reshape(owners.shape), owners)
+    field = tetwarp.displacement_field(*mesh, twisted, reference=volume)
+    moved = (rest - centres).reshape(field.values.shape)
+    assert np.isnan(moved[~field.mask]).all()
+    assert np.abs(moved - field.values)[field.mask].max() < 1e-3  # float32 of positions in 1e2 mm
+
+
+def test_points_go_there_and_back(mesh, twisted):
+    random = np.random.default_rng(3)
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    points = random.uniform(low, high, (500, 3))
+
+    there = tetwarp.transform_points(points, *mesh, twisted)
+    back = tetwarp.transform_points(there, *mesh, twisted, inverse=True)
+
+    assert not np.isnan(there).any()
+    assert np.abs(back - points).max() < 1e-9 * np.abs(high - low).max()
+
+
+def test_points_of_a_mesh_at_rest_stay(mesh):
+    inside = mesh.points.mean(axis=0) + np.arange(30).reshape(10, 3)
+
+    assert np.array_equal(tetwarp.transform_points(inside, *mesh, mesh.points), inside)
+
+
+def test_points_that_nothing_holds_are_told(single_tet):
+    points, cells = single_tet
+    outside = [(9, 9, 9), (np.nan, 0, 0), (0.5, 0.5, 0.5)]
+
+    moved, owners = tetwarp.transform_points(outside, points, cells, points + 1,
+                                             return_owners=True)
+
+    assert owners.tolist() == [-1, -1, 0]
+    assert np.isnan(moved[:2]).all() and moved[2].tolist() == [1.5, 1.5, 1.5]
+    zeros = tetwarp.transform_points(outside, points, cells, points, default_value=0)
+    assert zeros[0].tolist() == [0, 0, 0]
+
+
+def test_the_first_of_two_folded_tetrahedra_moves_a_point():
+    points = np.array([(0, 0, 0), (3, 0, 0), (0, 3, 0), (0, 0, 3)] * 2, float)
+    moved = points + np.repeat([[1.0, 0, 0], [2, 0, 0]], 4, axis=0)
+
+    for cells, step in (([(4, 5, 6, 7), (0, 1, 2, 3)], 2), ([(0, 1, 2, 3), (4, 5, 6, 7)], 1)):
+        result = tetwarp.transform_points([(1, 1, 1.0)], points, cells, moved)
+        assert result.tolist() == [[1 + step, 1, 1]]
+
+
+@pytest.mark.parametrize("keywords, text", [
+    (dict(), "reference: expected a grid"),
+    (dict(reference=tetwarp.Grid((2, 2, 2)), shape=(2, 2, 2)), "reference: it has a grid"),
+    (dict(shape=(2, 2, 2), convention="forward"), "convention: expected resampling or modeling"),
+])
+def test_errors_name_the_argument(keywords, text, single_tet):
+    points, cells = single_tet
+    with pytest.raises(ValueError, match=text):
+        tetwarp.displacement_field(points, cells, points, **keywords)
+
+
+def test_points_in_hexahedra_are_refused():
+    mesh = tetwarp.lattice_mesh(np.ones((4, 4, 4), np.uint8), cells=1, hexahedra=True)
+
+    with pytest.raises(ValueError, match="cells: expected tetrahedra"):
+        tetwarp.transform_points([(1, 1, 1)], *mesh, mesh.points)

@@ -1,0 +1,134 @@
+"""Files are written and read back."""
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+TURN = np.array([(0.8, -0.6, 0), (0.6, 0.8, 0), (0, 0, 1)])
+
+
+@pytest.mark.parametrize("dtype", ["uint8", "int16", "float32", "float64", "int64"])
+@pytest.mark.parametrize("ending", ["vtkhdf", "nii", "nii.gz"])
+def test_volumes_come_back(dtype, ending, tmp_path):
+    samples = np.arange(4 * 5 * 6).reshape(4, 5, 6).astype(dtype)
+    volume = tetwarp.Volume(samples, tetwarp.Grid((4, 5, 6), (1, 2, 3), (4, 5, 6), TURN))
+
+    tetwarp.write(tmp_path / f"a.{ending}", volume)
+    read = tetwarp.read(tmp_path / f"a.{ending}")
+
+    assert read.array.dtype == samples.dtype and np.array_equal(read.array, samples)
+    assert np.allclose(read.affine, volume.affine, atol=1e-5)
+
+
+def test_several_arrays_and_steps_come_back(tmp_path):
+    grid = tetwarp.Grid((3, 4, 5))
+    a, b = np.random.default_rng(1).random((2, 3, 4, 5))
+
+    tetwarp.write(tmp_path / "two.vtkhdf",
+                  [tetwarp.Volume(a, grid, "a"), tetwarp.Volume(b, grid, "b")], compress=3)
+    tetwarp.write(tmp_path / "steps.vtkhdf", [a, b], grid=grid, times=[0, 0.5])
+
+    header = tetwarp.read_header(tmp_path / "two.vtkhdf")
+    assert [array["name"] for array in header.arrays] == ["a", "b"] and header.grid == grid
+    assert np.array_equal(tetwarp.read(tmp_path / "two.vtkhdf", array="b"), b)
+    assert tetwarp.read_header(tmp_path / "steps.vtkhdf").times == [0, 0.5]
+    assert np.array_equal(tetwarp.read(tmp_path / "steps.vtkhdf", step=1), b)
+
+
+def test_headers_of_nifti_are_kept(tmp_path):
+    volume = tetwarp.phantom("fish", (5, 6, 7))
+    tetwarp.write(tmp_path / "a.nii", volume)
+    read = tetwarp.read(tmp_path / "a.nii")
+    read.nifti.update(description="a fish", qform_code=3, intent_code=1002)
+
+    tetwarp.write(tmp_path / "b.nii", read)
+
+    assert tetwarp.read(tmp_path / "b.nii").nifti == read.nifti
+
+
+def test_results_of_a_warp_keep_the_header(tmp_path, mesh, twisted, volume):
+    tetwarp.write(tmp_path / "a.nii", volume)
+    read = tetwarp.read(tmp_path / "a.nii")
+    read.nifti["description"] = "before"
+
+    tetwarp.write(tmp_path / "b.nii.gz", tetwarp.warp(read, *mesh, twisted))
+
+    assert tetwarp.read(tmp_path / "b.nii.gz").nifti["description"] == "before"
+    with pytest.raises(tetwarp.IoError, match="c.nii"):
+        tetwarp.write(tmp_path / "c.nii", tetwarp.warp(read, *mesh, twisted, outputs="mask"))
+
+
+def test_images_of_nibabel_are_the_same(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    affine = np.array([(-2, 0, 0, 90), (0, 0, 3, -126), (0, 2.5, 0, -72), (0, 0, 0, 1.0)])
+    image = nibabel.Nifti1Image(np.arange(120, dtype=np.int16).reshape(6, 5, 4), affine)
+    nibabel.save(image, tmp_path / "a.nii.gz")
+
+    read = tetwarp.read(tmp_path / "a.nii.gz")
+
+    assert np.array_equal(read.array, np.asarray(image.dataobj).T)
+    assert np.allclose(read.affine, affine)
+
+
+def test_hdf5_of_h5py_and_of_the_library_live_together(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    volume = tetwarp.phantom("fish", (5, 6, 7))
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["x"] = np.arange(5)
+        tetwarp.write(tmp_path / "a.vtkhdf", volume)
+        with h5py.File(tmp_path / "a.vtkhdf") as mine:
+            stored = mine["VTKHDF/PointData/fish"][...]
+        read = tetwarp.read(tmp_path / "a.vtkhdf")
+
+    assert np.array_equal(stored, volume.array) and np.array_equal(read.array, volume.array)
+
+
+@pytest.mark.parametrize("hexahedra", [False, True])
+def test_meshes_and_their_steps_come_back(hexahedra, volume, tmp_path):
+    mesh = tetwarp.lattice_mesh(volume, cells=3, hexahedra=hexahedra)
+    steps = [tetwarp.deform(*mesh, time=time) for time in (0, 0.5, 1)]
+
+    tetwarp.write(tmp_path / "mesh.vtkhdf", mesh, deformed=steps)
+    file = tetwarp.read(tmp_path / "mesh.vtkhdf")
+
+    assert np.array_equal(file.mesh.points, mesh.points)
+    assert np.array_equal(file.mesh.cells, mesh.cells)
+    assert file.times == [0, 0.5, 1] and len(file) == 3
+    assert all(np.allclose(x, y, rtol=0, atol=1e-12) for x, y in zip(file, steps))
+    assert np.array_equal(file.step(-1), file.step(2))
+    with pytest.raises(ValueError, match="number: expected a step from 0 to 2, got 3"):
+        file.step(3)
+
+
+def test_surfaces_come_back(volume, mesh, tmp_path):
+    surface = tetwarp.boundary_surface(*mesh)
+
+    tetwarp.write(tmp_path / "skin.vtkhdf", surface)
+
+    assert "points" in repr(surface)
+    with pytest.raises(tetwarp.IoError, match="skin.vtkhdf"):
+        tetwarp.read(tmp_path / "skin.vtkhdf").mesh  # triangles are no mesh to warp by
+
+
+def test_displacement_fields_are_written_for_itk(mesh, twisted, volume, tmp_path):
+    field = tetwarp.displacement_field(*mesh, twisted, reference=volume)
+
+    tetwarp.write(tmp_path / "field.nii.gz", field)
+    read = tetwarp.read(tmp_path / "field.nii.gz", axes="lps")
+
+    assert np.allclose(read.array, field.values, atol=1e-5)
+    plain = tetwarp.read(tmp_path / "field.nii.gz")  # ITK's components: x and y turned
+    assert np.allclose(plain.array * (-1, -1, 1), field.values, atol=1e-5)
+
+
+def test_errors_name_file_and_remedy(tmp_path):
+    with pytest.raises(tetwarp.IoError, match="none.vtkhdf"):
+        tetwarp.read(tmp_path / "none.vtkhdf")
+    (tmp_path / "text.vtkhdf").write_text("not a volume")
+    with pytest.raises(OSError, match="text.vtkhdf"):
+        tetwarp.read(tmp_path / "text.vtkhdf")
+    with pytest.raises(tetwarp.IoError):
+        tetwarp.write(tmp_path / "text.vtkhdf/a.nii", tetwarp.phantom("fish", (4, 4, 4)))
+    with pytest.raises(ValueError, match="grid: an array needs its grid"):
+        tetwarp.write(tmp_path / "a.nii", np.zeros((2, 2, 2)))

@@ -1,0 +1,64 @@
+"""Warps volumes by deformed meshes of tetrahedra and hexahedra, simulates such meshes, and solves
+frictional, adhesive contact.
+
+Volumes are arrays of shape (z, y, x) or (z, y, x, components) in C order, meshes are (n, 3) nodes
+and (m, 4) or (m, 8) cells. See docs/python.md.
+"""
+
+from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
+from ._core import Cancelled, CudaError, IoError, available_backends
+from ._core import version as __version__
+from ._fields import (
+    Field,
+    displacement_field,
+    jacobian_determinant,
+    rasterize,
+    strain,
+    transform_points,
+)
+from ._files import MeshFile, VolumeHeader, read, read_header, write
+from ._grid import Grid
+from ._mesh import Mesh, Surface, boundary_surface, deform, isosurface, lattice_mesh
+from ._simulate import Contacts, Simulator, StepRecord, shipped_scene, shipped_scenes
+from ._volume import Volume, phantom
+from ._warp import Warper, WarpResult, warp
+
+__all__ = [
+    "Cancelled",
+    "ContactProblem",
+    "ContactSolution",
+    "ContactSolver",
+    "Contacts",
+    "Csr",
+    "CudaError",
+    "Field",
+    "Grid",
+    "IoError",
+    "Mesh",
+    "MeshFile",
+    "Simulator",
+    "StepRecord",
+    "Surface",
+    "Volume",
+    "VolumeHeader",
+    "WarpResult",
+    "Warper",
+    "available_backends",
+    "boundary_surface",
+    "deform",
+    "displacement_field",
+    "isosurface",
+    "jacobian_determinant",
+    "lattice_mesh",
+    "phantom",
+    "rasterize",
+    "read",
+    "read_header",
+    "shipped_scene",
+    "shipped_scenes",
+    "solve_contacts",
+    "strain",
+    "transform_points",
+    "warp",
+    "write",
+]

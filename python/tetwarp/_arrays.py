@@ -1,0 +1,149 @@
+"""Checks of arguments: every error names the argument, what it is and what it should be."""
+
+from __future__ import annotations
+
+from typing import Any, Sequence
+
+import numpy as np
+
+PIXEL_TYPES = (
+    "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64",
+)
+_NO_CELLS = {4: np.empty((0, 4), np.int32), 8: np.empty((0, 8), np.int32)}
+
+
+def describe(array: np.ndarray) -> str:
+    """Shape and type of an array, for messages."""
+    return f"shape {array.shape} of {array.dtype}"
+
+
+def samples_of(value: Any, name: str) -> np.ndarray:
+    """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
+    array = np.asarray(value)
+    if array.dtype.newbyteorder("=").name not in PIXEL_TYPES:
+        hint = "; use .view(numpy.uint8)" if array.dtype == bool else ""
+        raise ValueError(
+            f"{name}: expected samples of {', '.join(PIXEL_TYPES)}, got {array.dtype}{hint}"
+        )
+    if array.ndim not in (3, 4):
+        raise ValueError(
+            f"{name}: expected shape (z, y, x) or (z, y, x, components), got {array.shape}"
+        )
+    if array.ndim == 4 and not 1 <= array.shape[3] <= 9:
+        raise ValueError(f"{name}: expected 1 to 9 components, got shape {array.shape}")
+    if 0 in array.shape:
+        raise ValueError(f"{name}: expected at least one voxel along each axis, got {array.shape}")
+    if not array.dtype.isnative:
+        array = array.astype(array.dtype.newbyteorder("="))
+    return np.ascontiguousarray(array)
+
+
+def number_of(value: Any, name: str) -> float:
+    """A number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected a number, got {value!r}") from None
+
+
+def nodes_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
+    """Positions of nodes: as points_of(), and finite."""
+    array = points_of(value, name, count)
+    finite = np.isfinite(array).all(axis=1)
+    if not finite.all():
+        raise ValueError(f"{name}: expected finite positions, row {int(finite.argmin())} is not")
+    return array
+
+
+def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
+    """Positions of shape (n, 3), float64 in C order; copied only if they are not."""
+    try:
+        array = np.asarray(value)
+        if not np.can_cast(array.dtype, np.float64, "same_kind"):
+            raise TypeError
+        array = np.ascontiguousarray(array, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected an array of numbers of shape (n, 3)") from None
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name}: expected shape (n, 3), x y z per row, got {array.shape}")
+    if count is not None and array.shape[0] != count:
+        raise ValueError(f"{name}: expected {count} rows, one per node, got {array.shape[0]}")
+    return array
+
+
+def _indices_of(array: np.ndarray, name: str, node_count: int) -> np.ndarray:
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name}: expected integers, numbers of nodes, got {array.dtype}")
+    if array.size and (array.min() < 0 or array.max() >= node_count):
+        wrong = int(array.min()) if array.min() < 0 else int(array.max())
+        raise ValueError(
+            f"{name}: expected numbers of nodes from 0 to {node_count - 1}, found {wrong}"
+        )
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def _cells_of_one_kind(value: Any, name: str, node_count: int) -> np.ndarray:
+    array = np.asarray(value)
+    if array.ndim != 2 or array.shape[1] not in (4, 8):
+        raise ValueError(
+            f"{name}: expected shape (m, 4) for tetrahedra or (m, 8) for hexahedra, "
+            f"got {array.shape}"
+        )
+    return _indices_of(array, name, node_count)
+
+
+def triangles_of(value: Any, name: str, node_count: int) -> np.ndarray:
+    """Triangles (m, 3) as int32."""
+    array = np.asarray(value)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name}: expected shape (m, 3), got {array.shape}")
+    return _indices_of(array, name, node_count)
+
+
+def cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Tetrahedra (m, 4) and hexahedra (m, 8) as int32; `value` is one of them or a pair."""
+    if isinstance(value, (tuple, list)) and len(value) == 2 and np.ndim(value[0]) == 2:
+        parts = [_cells_of_one_kind(part, name, node_count) for part in value]
+        if [part.shape[1] for part in parts] != [4, 8]:
+            raise ValueError(f"{name}: a pair is tetrahedra (m, 4), then hexahedra (m, 8)")
+        tets, hexes = parts
+    else:
+        one = _cells_of_one_kind(value, name, node_count)
+        tets = one if one.shape[1] == 4 else _NO_CELLS[4]
+        hexes = one if one.shape[1] == 8 else _NO_CELLS[8]
+    if len(tets) + len(hexes) == 0:
+        raise ValueError(f"{name}: expected at least one cell")
+    return tets, hexes
+
+
+def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
+    """Numbers as a flat float64 array in C order."""
+    try:
+        array = np.ascontiguousarray(value, dtype=np.float64).reshape(-1)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected an array of numbers") from None
+    if count is not None and array.size != count:
+        raise ValueError(f"{name}: expected {count} numbers, got {array.size}")
+    return array
+
+
+def vector_of(value: Any, name: str) -> tuple[float, float, float]:
+    """Three numbers x, y, z."""
+    numbers = numbers_of(value, name)
+    if numbers.size != 3:
+        raise ValueError(f"{name}: expected three numbers x, y, z, got {numbers.size}")
+    return float(numbers[0]), float(numbers[1]), float(numbers[2])
+
+
+def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarray:
+    """An array to write to: exactly of this shape and type, writable, in C order."""
+    shape, dtype = tuple(shape), np.dtype(dtype)
+    if not isinstance(value, np.ndarray):
+        raise ValueError(f"{name}: expected a numpy array of {dtype} to write to")
+    if value.shape != shape or value.dtype != dtype:
+        raise ValueError(f"{name}: expected shape {shape} of {dtype}, got {describe(value)}")
+    if not value.flags.c_contiguous:
+        raise ValueError(f"{name}: expected an array in C order, got strides {value.strides}")
+    if not value.flags.writeable:
+        raise ValueError(f"{name}: expected a writable array")
+    return value

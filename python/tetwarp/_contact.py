@@ -1,0 +1,272 @@
+"""Contact problems of one time step."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field, fields
+from typing import Any, Callable, NamedTuple
+
+import numpy as np
+
+from . import _core
+from ._arrays import numbers_of
+
+
+class Csr(NamedTuple):
+    """A sparse matrix by rows, as scipy.sparse.csr_array has it; `tocsr` makes one.
+
+    data : (entries,) float64
+    indices : (entries,) columns
+    indptr : (rows + 1,) where each row begins
+    shape : (rows, columns)
+    """
+
+    data: np.ndarray
+    indices: np.ndarray
+    indptr: np.ndarray
+    shape: tuple[int, int]
+
+    def tocsr(self) -> Any:
+        """As scipy.sparse.csr_array, which shares the arrays."""
+        import scipy.sparse  # type: ignore[import-untyped, unused-ignore]
+
+        return scipy.sparse.csr_array((self.data, self.indices, self.indptr), shape=self.shape)
+
+    def __repr__(self) -> str:
+        return f"Csr({self.shape[0]} x {self.shape[1]}, {len(self.data)} entries)"
+
+
+def csr_of(value: Any, name: str) -> Csr:
+    """A matrix of SciPy, a Csr or tuple of its members, or a dense array."""
+    if hasattr(value, "tocsr") and not isinstance(value, Csr):
+        value = value.tocsr()
+        value = Csr(value.data, value.indices, value.indptr, value.shape)
+    if isinstance(value, tuple) and len(value) == 4:
+        data, indices, indptr, shape = value
+    else:
+        dense = np.asarray(value)
+        if dense.ndim != 2 or dense.dtype.kind not in "iuf":
+            raise ValueError(
+                f"{name}: expected a sparse matrix of SciPy, (data, indices, indptr, shape) or an "
+                "array of two axes"
+            )
+        rows, indices = np.nonzero(dense)
+        data, shape = dense[rows, indices], dense.shape
+        indptr = np.searchsorted(rows, np.arange(dense.shape[0] + 1))
+    csr = Csr(
+        numbers_of(data, f"{name}.data"),
+        np.ascontiguousarray(indices, dtype=np.int32).reshape(-1),
+        np.ascontiguousarray(indptr, dtype=np.int64).reshape(-1),
+        (int(shape[0]), int(shape[1])),
+    )
+    if len(csr.data) != len(csr.indices):
+        raise ValueError(f"{name}.indices: expected {len(csr.data)}, got {len(csr.indices)}")
+    if len(csr.indptr) != csr.shape[0] + 1:
+        raise ValueError(f"{name}.indptr: expected {csr.shape[0] + 1}, got {len(csr.indptr)}")
+    return csr
+
+
+_MATRICES = ("system", "jacobian", "delassus")
+_VECTORS = (
+    "load", "velocity_offset", "free_velocity", "friction", "second_friction", "impulse_guess",
+)
+
+
+@dataclass(eq=False)
+class ContactProblem:
+    """Contacts of one time step in one of two forms; the members of the other form stay None:
+
+        global:  A v = J^T r + b,  u = J v + w        local:  u = W r + q
+
+    Each contact has three rows: normal, tangent 1, tangent 2. Matrices are given as SciPy sparse
+    matrices, as (data, indices, indptr, shape), or as arrays of two axes, and are kept as Csr.
+
+    system, jacobian : A [kg, kg m^2], symmetric positive definite, and J, (3 contacts, dofs)
+    load, velocity_offset : b [N s], w [m/s]
+    delassus, free_velocity : W [1/kg], (3 contacts, 3 contacts), and q [m/s]
+    friction : mu, one per contact; its size is the number of contacts
+    second_friction : mu along tangent 2, where it differs
+    impulse_guess : r to start from, (3 contacts)
+    block_start : first degree of freedom of each body, then their number
+    adhesion : dict with time_step [s] and per contact area, stiffness, tangential_stiffness,
+        intensity, gap (three), energy, viscosity, bonding_rate, saturation_pressure
+    """
+
+    system: Any = None
+    jacobian: Any = None
+    load: Any = None
+    velocity_offset: Any = None
+    delassus: Any = None
+    free_velocity: Any = None
+    friction: Any = None
+    second_friction: Any = None
+    impulse_guess: Any = None
+    block_start: Any = None
+    adhesion: dict[str, Any] | None = None
+
+    def __post_init__(self) -> None:
+        for name in _MATRICES:
+            if getattr(self, name) is not None:
+                setattr(self, name, csr_of(getattr(self, name), name))
+        for name in _VECTORS:
+            if getattr(self, name) is not None:
+                setattr(self, name, numbers_of(getattr(self, name), name))
+        if self.block_start is not None:
+            self.block_start = np.ascontiguousarray(self.block_start, dtype=np.int32).reshape(-1)
+        if self.adhesion is not None:
+            if "time_step" not in self.adhesion:
+                raise ValueError("adhesion: expected time_step [s]")
+            self.adhesion = {
+                name: float(value) if name == "time_step"
+                else numbers_of(value, f"adhesion.{name}")
+                for name, value in self.adhesion.items()
+            }
+
+    @property
+    def contact_count(self) -> int:
+        return 0 if self.friction is None else len(self.friction)
+
+    def __repr__(self) -> str:
+        form = "local" if self.delassus is not None else "global"
+        return f"ContactProblem({self.contact_count} contacts, {form} form)"
+
+    def _core(self) -> dict[str, Any]:
+        given = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {
+            name: tuple(value) if isinstance(value, Csr) else value
+            for name, value in given.items() if value is not None
+        }
+
+
+@dataclass(eq=False)
+class ContactSolution:
+    """Impulses and velocities that solve a problem.
+
+    impulse : r, (contacts, 3): normal, tangent 1, tangent 2 [N s]
+    velocity : u, (contacts, 3) [m/s]
+    body_velocity : v, (dofs,) [m/s, rad/s]; empty in local form
+    status : ``"converged"``, ``"not converged"``, ``"infeasible"`` or ``"unbounded"``
+    report : what the solve did; its keys are in docs/formats.md
+    """
+
+    impulse: np.ndarray
+    velocity: np.ndarray
+    body_velocity: np.ndarray
+    status: str
+    report: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def converged(self) -> bool:
+        return self.status == "converged"
+
+    @property
+    def residual(self) -> float:
+        """eta: relative, without unit."""
+        return self.report["residual"]
+
+    def __repr__(self) -> str:
+        return (
+            f"ContactSolution({len(self.impulse)} contacts, {self.status}, "
+            f"residual {self.residual:.2g})"
+        )
+
+
+class ContactSolver:
+    """Solves a series of problems; keeps memory, and structure while it stays the same.
+
+    Keywords as of solve_contacts(). Not for use by several threads at once.
+    """
+
+    def __init__(
+        self,
+        *,
+        law: str = "cone",
+        rule: str = "parallel",
+        method: str = "auto",
+        measure: str = "eta",
+        tolerance: float = 1e-6,
+        max_sweeps: int = 20000,
+        recovery_speed: float = np.inf,
+        max_seconds: float = np.inf,
+        backend: str = "auto",
+        device: int = 0,
+        threads: int = 0,
+    ) -> None:
+        self._solver = _core.ContactSolver(
+            law=law, rule=rule, method=method, measure=measure, tolerance=float(tolerance),
+            max_sweeps=int(max_sweeps), recovery_speed=float(recovery_speed),
+            max_seconds=float(max_seconds), backend=backend, device=int(device),
+            threads=int(threads),
+        )
+
+    def solve(
+        self,
+        problem: ContactProblem,
+        *,
+        progress: Callable[[float, int], Any] | None = None,
+    ) -> ContactSolution:
+        """Solves one problem; see solve_contacts()."""
+        impulse, velocity, body_velocity, text = self._solver.solve(problem._core(), progress)
+        report = json.loads(text)
+        return ContactSolution(impulse, velocity, body_velocity, report["status"], report)
+
+
+def solve_contacts(
+    problem: ContactProblem | None = None,
+    *,
+    system: Any = None,
+    jacobian: Any = None,
+    load: Any = None,
+    velocity_offset: Any = None,
+    delassus: Any = None,
+    free_velocity: Any = None,
+    friction: Any = None,
+    second_friction: Any = None,
+    impulse_guess: Any = None,
+    block_start: Any = None,
+    adhesion: dict[str, Any] | None = None,
+    progress: Callable[[float, int], Any] | None = None,
+    **options: Any,
+) -> ContactSolution:
+    """Solves one time step of frictional, adhesive contact.
+
+    Parameters
+    ----------
+    problem : ContactProblem, or its members as keywords
+    progress : called with seconds and sweeps so far; False ends the solve, which then returns its
+        best iterate
+    law : friction ``"cone"`` or ``"pyramid"``
+    rule : of adhesion with friction, ``"parallel"`` or ``"restrictive"``
+    method : ``"auto"``, or a single method for comparison
+    measure, tolerance : of the residual, ``"eta"`` or ``"fclib"``, relative
+    max_sweeps, max_seconds : limits
+    recovery_speed : existing penetration is undone at most this fast [m/s]
+    backend, device, threads : where to solve
+
+    Returns
+    -------
+    ContactSolution. Not converging is a status, no error.
+
+    Raises
+    ------
+    ValueError
+        the problem or an option is invalid; names the member, the index and the remedy.
+        Ctrl-C raises KeyboardInterrupt.
+
+    A mass of 1 kg at 1 m/s above a floor, of friction 0.5, slides and stops falling:
+
+    >>> solution = solve_contacts(delassus=np.eye(3), free_velocity=[-1, 2, 0], friction=[0.5])
+    >>> solution.converged, solution.impulse[0, :2].round(6).tolist()
+    (True, [1.0, -0.5])
+    """
+    members = {
+        "system": system, "jacobian": jacobian, "load": load, "velocity_offset": velocity_offset,
+        "delassus": delassus, "free_velocity": free_velocity, "friction": friction,
+        "second_friction": second_friction, "impulse_guess": impulse_guess,
+        "block_start": block_start, "adhesion": adhesion,
+    }
+    if problem is None:
+        problem = ContactProblem(**members)
+    elif any(value is not None for value in members.values()):
+        raise ValueError("problem: give either a ContactProblem or its members")
+    return ContactSolver(**options).solve(problem, progress=progress)

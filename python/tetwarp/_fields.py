@@ -1,0 +1,267 @@
+"""Fields of a deformation on a grid, and points that it moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import cells_of, nodes_of, number_of, points_of
+from ._grid import Grid, make_grid, reference_grid
+from ._mesh import Cells
+from ._volume import Volume
+from ._warp import Warper, WarpResult
+
+_CONVENTIONS = {"resampling": "displacement", "modeling": "forward"}
+
+
+@dataclass(eq=False)
+class Field:
+    """Numbers of a deformation at the voxels of a grid; ``numpy.asarray(field)`` is `values`.
+
+    values : (z, y, x) or (z, y, x, c) float32; 0 where `mask` is False
+    mask : (z, y, x) bool, where a cell covers the voxel
+    grid : of both
+    name : of the array in files
+    """
+
+    values: np.ndarray
+    mask: np.ndarray
+    grid: Grid
+    name: str
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        if copy:
+            return np.array(self.values, dtype=dtype)
+        return np.asarray(self.values, dtype=dtype)
+
+    def __repr__(self) -> str:
+        return f"Field({self.name}, {self.values.shape}, {self.mask.mean():.1%} covered)"
+
+
+def _grid_of(
+    reference: Any, shape: Any, spacing: Any, origin: Any, direction: Any, affine: Any
+) -> Grid:
+    if reference is not None:
+        if any(x is not None for x in (shape, spacing, origin, direction, affine)):
+            raise ValueError("reference: it has a grid; leave out shape, spacing and the like")
+        return reference_grid(reference)
+    if shape is None:
+        raise ValueError("reference: expected a grid, by reference or by shape")
+    return make_grid(shape, spacing, origin, direction, affine)
+
+
+def _outputs_on(
+    grid: Grid, rest: Any, cells: Cells, deformed: Any, names: tuple[str, ...], options: Any
+) -> WarpResult:
+    """Outputs of a warp other than its volume, which is one byte per voxel."""
+    shape = grid.shape if "forward" in names else (1, 1, 1)
+    samples = np.zeros(shape, np.uint8)
+    source = Volume(samples, Grid(shape, grid.spacing, grid.origin, grid.direction))
+    with Warper(source, rest, cells, interpolator="nearest", reference=grid, **options) as warper:
+        return warper(deformed, outputs=names)
+
+
+def _field(name: str, title: str, grid: Grid, rest: Any, cells: Cells, deformed: Any,
+           options: Any) -> Field:
+    result = _outputs_on(grid, rest, cells, deformed, (name, "mask"), options)
+    mask = result.extras["mask"].view(bool)
+    if name == "forward":  # covered at rest, unlike the mask of the deformed mesh
+        mask = rasterize(rest, cells, reference=grid) >= 0
+    return Field(result.extras[name], mask, grid, title)
+
+
+def displacement_field(
+    rest: Any,
+    cells: Cells,
+    deformed: Any,
+    *,
+    reference: Any = None,
+    shape: Any = None,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    affine: Any = None,
+    convention: str = "resampling",
+    **options: Any,
+) -> Field:
+    """Displacements at the voxels of a grid.
+
+    Parameters
+    ----------
+    rest, deformed : (n, 3) node positions before and after [world]
+    cells : (m, 4), (m, 8), or a pair of both
+    reference : Grid, or something that has one; or `shape` (z, y, x) with the keywords of Grid
+    convention : ``"resampling"``: from the voxel of the deformed image to the rest position, as
+        image resamplers take it; ``"modeling"``: from the voxel at rest to the deformed position
+    options : backend, device, threads, as of Warper
+
+    Returns
+    -------
+    Field of shape (z, y, x, 3), x y z in world units; `write` stores it as ITK's transforms take it
+
+    >>> import tetwarp
+    >>> mesh = tetwarp.lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=2)
+    >>> moved = tetwarp.deform(*mesh, kind="translate", offset=(0.25, 0, 0))
+    >>> field = displacement_field(*mesh, moved, shape=(8, 8, 8))
+    >>> field.values[4, 4, 4]
+    array([-0.25,  0.  ,  0.  ], dtype=float32)
+    """
+    if convention not in _CONVENTIONS:
+        raise ValueError(f"convention: expected resampling or modeling, got {convention!r}")
+    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    name = _CONVENTIONS[convention]
+    return _field(name, f"tetwarp_{name}", grid, rest, cells, deformed, options)
+
+
+def jacobian_determinant(
+    rest: Any,
+    cells: Cells,
+    deformed: Any,
+    *,
+    reference: Any = None,
+    shape: Any = None,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    affine: Any = None,
+    **options: Any,
+) -> Field:
+    """det F at the voxels of the deformed image, F the derivative of the deformed position by the
+    rest position: volume after over volume before, negative where inverted.
+
+    Parameters and errors as of displacement_field(). Returns a Field of shape (z, y, x).
+
+    >>> import tetwarp
+    >>> mesh = tetwarp.lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=2)
+    >>> jacobian_determinant(*mesh, 0.5 * mesh.points, shape=(8, 8, 8)).values[1, 1, 1]
+    np.float32(0.125)
+    """
+    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    return _field("jacobian", "tetwarp_jacobian", grid, rest, cells, deformed, options)
+
+
+def strain(
+    rest: Any,
+    cells: Cells,
+    deformed: Any,
+    *,
+    reference: Any = None,
+    shape: Any = None,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    affine: Any = None,
+    **options: Any,
+) -> Field:
+    """Green-Lagrange strain (F^T F - I) / 2 at the voxels of the deformed image.
+
+    Parameters and errors as of displacement_field(). Returns a Field of shape (z, y, x, 6):
+    XX YY ZZ XY YZ XZ in world axes.
+
+    >>> import tetwarp
+    >>> mesh = tetwarp.lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=2)
+    >>> strain(*mesh, 0.5 * mesh.points, shape=(8, 8, 8)).values[1, 1, 1, :3]
+    array([-0.375, -0.375, -0.375], dtype=float32)
+    """
+    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    return _field("strain", "tetwarp_strain", grid, rest, cells, deformed, options)
+
+
+def rasterize(
+    points: Any,
+    cells: Cells,
+    *,
+    reference: Any = None,
+    shape: Any = None,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    affine: Any = None,
+    **options: Any,
+) -> np.ndarray:
+    """Which cell owns each voxel: the lowest-numbered one whose closed shape contains its centre.
+
+    Parameters
+    ----------
+    points : (n, 3) node positions [world]
+    cells : (m, 4), (m, 8), or a pair of both, numbered tetrahedra first
+    reference, shape, spacing, origin, direction, affine : the grid, as of displacement_field()
+    options : backend, device, threads, as of Warper
+
+    Returns
+    -------
+    (z, y, x) int32, -1 where no cell covers the voxel
+
+    >>> import tetwarp
+    >>> tet = [(0, 0, 0), (3, 0, 0), (0, 3, 0), (0, 0, 3)]
+    >>> int((rasterize(tet, [(0, 1, 2, 3)], shape=(4, 4, 4)) == 0).sum())
+    20
+    """
+    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    return _outputs_on(grid, points, cells, points, ("owner",), options).extras["owner"]
+
+
+def transform_points(
+    points: Any,
+    rest: Any,
+    cells: Cells,
+    deformed: Any,
+    *,
+    inverse: bool = False,
+    default_value: float = np.nan,
+    reference: Any = None,
+    return_owners: bool = False,
+) -> Any:
+    """Moves points with the tetrahedra that hold them.
+
+    The owner of a point is the lowest-numbered tetrahedron whose closed shape contains it, decided
+    in exact integers after positions are rounded to 2^-20 voxel of a grid, as in a warp: with the
+    grid of a warp, ``inverse=True`` gives voxel centres the owners of that warp.
+
+    Parameters
+    ----------
+    points : (k, 3), in the rest mesh, or with `inverse` in the deformed one [world]
+    rest, deformed : (n, 3) node positions before and after [world]
+    cells : (m, 4) tetrahedra
+    inverse : False: from rest to deformed; True: back
+    default_value : of all three numbers of points that no tetrahedron holds
+    reference : grid whose voxels set the rounding; None: at most
+        2^-36 of the longest side of the mesh
+    return_owners : also return the owners, (k,) int32, -1: none
+
+    Returns
+    -------
+    (k, 3) float64, or a pair with the owners
+
+    Raises
+    ------
+    ValueError
+        naming the argument; hexahedra are refused.
+
+    >>> tet = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1.0)])
+    >>> transform_points([(0.25, 0.25, 0.25)], tet, [(0, 1, 2, 3)], 2 * tet)
+    array([[0.5, 0.5, 0.5]])
+    """
+    where = points_of(points, "points")
+    start = nodes_of(rest, "rest")
+    end = nodes_of(deformed, "deformed", len(start))
+    tets, hexes = cells_of(cells, "cells", len(start))
+    if len(hexes):
+        raise ValueError("cells: expected tetrahedra (m, 4); points in hexahedra are not moved")
+    if inverse:
+        start, end = end, start
+    if reference is None:
+        low, high = start.min(axis=0), start.max(axis=0)
+        # A power of two, so that rounding keeps positions of few binary digits.
+        edge = 2.0 ** (np.ceil(np.log2(max(float((high - low).max()), 2.0**-500))) - 17)
+        grid = Grid((1, 1, 1), (edge,) * 3, tuple(low))
+    else:
+        grid = reference_grid(reference)
+    moved, owners = _core.map_points(where, grid._core(), start, tets, end)
+    value = number_of(default_value, "default_value")
+    if not np.isnan(value):
+        moved[owners < 0] = value
+    return (moved, owners) if return_owners else moved

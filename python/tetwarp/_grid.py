@@ -1,0 +1,134 @@
+"""Regular grids of voxel centres in the world."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import numbers_of, vector_of
+
+_UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A regular grid of voxel centres.
+
+    The centre of voxel (i, j, k), which is element ``[k, j, i]`` of an array, is at
+    ``origin + direction @ (spacing * (i, j, k))`` in the world, in length units of the caller.
+
+    Parameters
+    ----------
+    shape : (z, y, x), voxels along the axes of an array
+    spacing : (x, y, z), distance of centres along the grid's axes, above 0
+    origin : (x, y, z), centre of the first voxel
+    direction : 3 x 3, its columns are the grid's axes in the world; invertible
+
+    Raises
+    ------
+    ValueError
+        naming the argument that is wrong.
+
+    >>> Grid((4, 5, 6), spacing=(1, 1, 2)).affine[2]
+    array([0., 0., 2., 0.])
+    """
+
+    shape: tuple[int, int, int]
+    spacing: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    direction: tuple[tuple[float, float, float], ...] = field(default=_UNIT)
+
+    def __post_init__(self) -> None:
+        shape = tuple(int(n) for n in np.reshape(self.shape, -1))
+        if len(shape) != 3:
+            raise ValueError(f"shape: expected three numbers z, y, x, got {self.shape}")
+        if not all(1 <= n <= 2**30 for n in shape):
+            raise ValueError(f"shape: expected 1 to 2^30 voxels along each axis, got {shape}")
+        rows = numbers_of(self.direction, "direction")
+        if rows.size != 9:
+            raise ValueError(f"direction: expected 3 x 3 numbers, got {rows.size}")
+        set_ = object.__setattr__  # the class is frozen
+        set_(self, "shape", shape)
+        set_(self, "spacing", vector_of(self.spacing, "spacing"))
+        set_(self, "origin", vector_of(self.origin, "origin"))
+        set_(self, "direction", tuple(tuple(float(x) for x in row) for row in rows.reshape(3, 3)))
+        self._core()
+
+    @classmethod
+    def from_affine(cls, shape: Any, affine: Any) -> Grid:
+        """The grid of a 4 x 4 matrix from (i, j, k, 1) to the world, as nibabel has it.
+
+        >>> Grid.from_affine((4, 5, 6), np.diag([2, 3, 4, 1])).spacing
+        (2.0, 3.0, 4.0)
+        """
+        matrix = numbers_of(affine, "affine")
+        if matrix.size != 16:
+            raise ValueError(f"affine: expected 4 x 4 numbers, got shape {np.shape(affine)}")
+        matrix = matrix.reshape(4, 4)
+        if not np.array_equal(matrix[3], (0, 0, 0, 1)):
+            raise ValueError("affine: expected 0 0 0 1 as its last row")
+        spacing = np.linalg.norm(matrix[:3, :3], axis=0)
+        if not np.all(spacing > 0):
+            raise ValueError("affine: expected columns other than 0")
+        direction: Any = matrix[:3, :3] / spacing
+        place: tuple[Any, Any] = tuple(spacing), tuple(matrix[:3, 3])
+        return cls(shape, *place, direction)
+
+    @property
+    def affine(self) -> np.ndarray:
+        """4 x 4 matrix from (i, j, k, 1) to the world."""
+        affine = np.eye(4)
+        affine[:3, :3] = np.array(self.direction) * np.array(self.spacing)
+        affine[:3, 3] = self.origin
+        return affine
+
+    def points(self) -> np.ndarray:
+        """World positions of all voxel centres, shape (z, y, x, 3)."""
+        k, j, i = np.meshgrid(*(np.arange(n, dtype=float) for n in self.shape), indexing="ij")
+        index = np.stack([i, j, k], axis=-1) * np.array(self.spacing)
+        return index @ np.array(self.direction).T + np.array(self.origin)
+
+    def _core(self) -> _core.Grid:
+        z, y, x = self.shape
+        rows = [number for row in self.direction for number in row]
+        return _core.Grid((x, y, z), self.origin, self.spacing, rows)
+
+
+def grid_from_core(grid: _core.Grid) -> Grid:
+    return make_grid(grid.dims[::-1], grid.spacing, grid.origin, grid.direction, None)
+
+
+def make_grid(shape: Any, spacing: Any, origin: Any, direction: Any, affine: Any) -> Grid:
+    """The grid of the usual keywords: `affine`, or any of the other three."""
+    if affine is not None:
+        if spacing is not None or origin is not None or direction is not None:
+            raise ValueError("affine: give either affine, or spacing, origin and direction")
+        return Grid.from_affine(shape, affine)
+    return Grid(
+        shape,
+        (1.0, 1.0, 1.0) if spacing is None else spacing,
+        (0.0, 0.0, 0.0) if origin is None else origin,
+        _UNIT if direction is None else direction,
+    )
+
+
+def reference_grid(reference: Any) -> Grid:
+    """The grid of a Grid, of what has an attribute `grid`, or of an image of nibabel or ITK."""
+    if isinstance(reference, Grid):
+        return reference
+    if isinstance(getattr(reference, "grid", None), Grid):
+        return reference.grid
+    if hasattr(reference, "affine") and hasattr(reference, "shape"):  # nibabel: axes x, y, z
+        return Grid.from_affine(tuple(reference.shape[:3])[::-1], reference.affine)
+    if hasattr(reference, "GetSpacing") and hasattr(reference, "GetDirection"):  # SimpleITK
+        return make_grid(
+            tuple(reference.GetSize())[::-1], reference.GetSpacing(), reference.GetOrigin(),
+            np.reshape(reference.GetDirection(), (3, 3)), None,
+        )
+    raise ValueError(
+        "reference: expected a tetwarp.Grid, a Volume, a result of a warp, or an image of nibabel "
+        f"or SimpleITK, got {type(reference).__name__}"
+    )

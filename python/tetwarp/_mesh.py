@@ -1,0 +1,179 @@
+"""Meshes of tetrahedra and hexahedra, and surfaces of triangles."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import _core
+from ._arrays import cells_of, nodes_of, vector_of
+from ._volume import volume_of
+
+Cells = Any  # (m, 4), (m, 8), or a pair of both
+
+_AXES = {"x": 0, "y": 1, "z": 2}
+
+
+class Mesh(NamedTuple):
+    """Nodes and cells; ``points, cells = mesh`` unpacks it.
+
+    points : (n, 3) float64, x y z [world]
+    cells : (m, 4) tetrahedra or (m, 8) hexahedra in VTK's order, int32; a pair where there are both
+    """
+
+    points: np.ndarray
+    cells: Cells
+
+    @property
+    def cell_count(self) -> int:
+        """Tetrahedra and hexahedra."""
+        if isinstance(self.cells, tuple):
+            return sum(len(part) for part in self.cells)
+        return len(self.cells)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({len(self.points)} nodes, {self.cell_count} cells)"
+
+
+class Surface(NamedTuple):
+    """Triangles.
+
+    points : (n, 3) float64, x y z [world]
+    triangles : (m, 3) int32, counter-clockwise from outside
+    """
+
+    points: np.ndarray
+    triangles: np.ndarray
+
+    def __repr__(self) -> str:
+        return f"Surface({len(self.points)} points, {len(self.triangles)} triangles)"
+
+
+def joined_cells(tets: np.ndarray, hexes: np.ndarray) -> Cells:
+    """Cells as a Mesh has them."""
+    if len(hexes) == 0:
+        return tets
+    return hexes if len(tets) == 0 else (tets, hexes)
+
+
+def lattice_mesh(
+    volume: Any,
+    *,
+    cells: int = 8,
+    threshold: float | None = None,
+    hexahedra: bool = False,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    affine: Any = None,
+) -> Mesh:
+    """A mesh of cubes along the axes of the grid that covers the foreground of a volume.
+
+    Parameters
+    ----------
+    volume : Volume, or samples of shape (z, y, x) or (z, y, x, c)
+    cells : cubes along the longest side of the foreground's box, at least 1
+    threshold : voxels above it are foreground; None: all voxels are
+    hexahedra : True: one hexahedron per cube; False: five tetrahedra
+    spacing, origin, direction, affine : of the grid of an array, see Grid
+
+    Raises
+    ------
+    ValueError
+        there is no foreground, or naming the argument.
+
+    >>> lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=2)
+    Mesh(27 nodes, 40 cells)
+    """
+    source = volume_of(volume, "volume", spacing, origin, direction, affine)
+    made = _core.lattice_mesh(
+        source.array, source.grid._core(), int(cells),
+        None if threshold is None else float(threshold), bool(hexahedra),
+    )
+    return Mesh(*made)
+
+
+def deform(
+    points: Any,
+    cells: Cells,
+    *,
+    kind: str = "twist",
+    amount: float = 1.0,
+    axis: str = "z",
+    seed: int = 1,
+    offset: Any = (0.0, 0.0, 0.0),
+    time: float = 1.0,
+) -> np.ndarray:
+    """Node positions of a smooth deformation, for demonstrations and tests.
+
+    Parameters
+    ----------
+    points : (n, 3), nodes at rest [world]
+    cells : (m, 4), (m, 8), or a pair of both
+    kind : ``"twist"``, ``"bend"``, ``"swim"``, ``"random"``, ``"rotate"`` or ``"translate"``
+    amount : quarter turns for twist, bend and rotate; relative to the mesh's box for swim and
+        random
+    axis : ``"x"``, ``"y"`` or ``"z"``, of twist, bend, swim and rotate
+    seed : of random
+    offset : (x, y, z), of translate [world]
+    time : 0 (at rest) to 1 (the full amount)
+
+    Returns
+    -------
+    (n, 3) float64
+
+    >>> mesh = lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=2)
+    >>> deform(*mesh, kind="translate", offset=(1, 0, 0))[0] - mesh.points[0]
+    array([1., 0., 0.])
+    """
+    nodes = nodes_of(points, "points")
+    tets, hexes = cells_of(cells, "cells", len(nodes))
+    if axis not in _AXES:
+        raise ValueError(f"axis: expected x, y or z, got {axis!r}")
+    if not 0 <= seed < 2**64:
+        raise ValueError(f"seed: expected a number from 0 to 2^64 - 1, got {seed}")
+    return np.asarray(_core.deform(
+        nodes, tets, hexes, kind, float(amount), _AXES[axis], int(seed),
+        vector_of(offset, "offset"), float(time),
+    ))
+
+
+def boundary_surface(points: Any, cells: Cells) -> Surface:
+    """The triangles that only one tetrahedron of a mesh has.
+
+    >>> mesh = lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=1)
+    >>> boundary_surface(*mesh)
+    Surface(8 points, 12 triangles)
+    """
+    nodes = nodes_of(points, "points")
+    return Surface(*_core.boundary_surface(nodes, *cells_of(cells, "cells", len(nodes))))
+
+
+def isosurface(
+    volume: Any,
+    value: float,
+    *,
+    triangles: int | None = None,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    affine: Any = None,
+) -> Surface:
+    """The closed surface around the samples from `value` on.
+
+    Parameters
+    ----------
+    volume : Volume, or samples of shape (z, y, x)
+    value : samples from it on are inside
+    triangles : about how many; None: as many as there are
+    spacing, origin, direction, affine : of the grid of an array, see Grid
+
+    >>> isosurface(np.pad(np.ones((2, 2, 2)), 2), 0.5)
+    Surface(60 points, 116 triangles)
+    """
+    source = volume_of(volume, "volume", spacing, origin, direction, affine)
+    made = _core.isosurface(source.array, source.grid._core(), float(value), triangles)
+    return Surface(*made)
+
+
