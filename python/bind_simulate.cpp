@@ -29,7 +29,7 @@ nb::tuple tuple_of(const Point3& x) {
 
 nb::dict dict_of(const BodyRecord& body) {
   nb::dict all;
-  all["centre"] = tuple_of(body.centre);
+  all["centre"] = tuple_of(body.center);
   all["velocity"] = tuple_of(body.velocity);
   all["angular_momentum"] = tuple_of(body.angular_momentum);
   all["contact_force"] = tuple_of(body.contact_force);

@@ -16,7 +16,7 @@ struct MappedPoints {
 /// Moves points with the tetrahedra that hold them: the owner of a point is the tetrahedron of the
 /// lowest number whose closed shape contains it, as of a voxel in a warp. Owners are decided in
 /// exact integers, after nodes and points are rounded to 2^-20 voxel of `grid`; in the grid of a
-/// warp, centres of voxels have the owners of the warp.
+/// warp, centers of voxels have the owners of the warp.
 /// @param from, to  nodes of the tetrahedra, where the points are and where they are taken [world]
 /// @throws std::invalid_argument  nodes that are not finite or too far from the grid, tetrahedra of
 ///         more than 2^20 of its voxels

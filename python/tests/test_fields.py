@@ -52,14 +52,14 @@ def test_the_mask_of_a_modeling_field_is_of_the_rest_mesh(single_tet):
 
 def test_points_have_the_owners_of_the_warp(volume, mesh, twisted):
     owners = tetwarp.rasterize(twisted, mesh.cells, reference=volume)
-    centres = volume.grid.points().reshape(-1, 3)
+    centers = volume.grid.points().reshape(-1, 3)
 
-    rest, found = tetwarp.transform_points(centres, *mesh, twisted, inverse=True,
+    rest, found = tetwarp.transform_points(centers, *mesh, twisted, inverse=True,
                                            reference=volume, return_owners=True)
 
     assert np.array_equal(found.reshape(owners.shape), owners)
     field = tetwarp.displacement_field(*mesh, twisted, reference=volume)
-    moved = (rest - centres).reshape(field.values.shape)
+    moved = (rest - centers).reshape(field.values.shape)
     assert np.isnan(moved[~field.mask]).all()
     assert np.abs(moved - field.values)[field.mask].max() < 1e-3  # float32 of positions in 1e2 mm
 

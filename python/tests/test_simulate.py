@@ -39,7 +39,7 @@ def test_a_beam_bends_under_its_weight():
     assert moved[:, 2].min() < rest[:, 2].min() - 1e-4
     assert simulator.step_index == 5 and simulator.time == pytest.approx(5 * simulator.time_step)
     record = simulator.record()
-    assert record.converged and record.energy.kinetic > 0 and record.bodies[0].centre.shape == (3,)
+    assert record.converged and record.energy.kinetic > 0 and record.bodies[0].center.shape == (3,)
     assert "step 5 of" in repr(simulator) and "converged True" in repr(record)
     assert pickle.loads(pickle.dumps(record)).time == record.time
 

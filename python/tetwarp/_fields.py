@@ -182,7 +182,7 @@ def rasterize(
     affine: Any = None,
     **options: Any,
 ) -> np.ndarray:
-    """Which cell owns each voxel: the lowest-numbered one whose closed shape contains its centre.
+    """Which cell owns each voxel: the lowest-numbered one whose closed shape contains its center.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def transform_points(
 
     The owner of a point is the lowest-numbered tetrahedron whose closed shape contains it, decided
     in exact integers after positions are rounded to 2^-20 voxel of a grid, as in a warp: with the
-    grid of a warp, ``inverse=True`` gives voxel centres the owners of that warp.
+    grid of a warp, ``inverse=True`` gives voxel centers the owners of that warp.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Regular grids of voxel centres in the world."""
+"""Regular grids of voxel centers in the world."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 @dataclass(frozen=True)
 class Grid:
-    """A regular grid of voxel centres.
+    """A regular grid of voxel centers.
 
-    The centre of voxel (i, j, k), which is element ``[k, j, i]`` of an array, is at
+    The center of voxel (i, j, k), which is element ``[k, j, i]`` of an array, is at
     ``origin + direction @ (spacing * (i, j, k))`` in the world, in length units of the caller.
 
     Parameters
     ----------
     shape : (z, y, x), voxels along the axes of an array
-    spacing : (x, y, z), distance of centres along the grid's axes, above 0
-    origin : (x, y, z), centre of the first voxel
+    spacing : (x, y, z), distance of centers along the grid's axes, above 0
+    origin : (x, y, z), center of the first voxel
     direction : 3 x 3, its columns are the grid's axes in the world; invertible
 
     Raises
@@ -86,7 +86,7 @@ class Grid:
         return affine
 
     def points(self) -> np.ndarray:
-        """World positions of all voxel centres, shape (z, y, x, 3)."""
+        """World positions of all voxel centers, shape (z, y, x, 3)."""
         k, j, i = np.meshgrid(*(np.arange(n, dtype=float) for n in self.shape), indexing="ij")
         index = np.stack([i, j, k], axis=-1) * np.array(self.spacing)
         return index @ np.array(self.direction).T + np.array(self.origin)

@@ -113,7 +113,7 @@ class Simulator:
     ValueError
         bodies cannot be simulated, for example because they intersect at the start.
 
-    Bodies are named by name or number. Lengths are in metres, all units SI. Not for use by several
+    Bodies are named by name or number. Lengths are in meters, all units SI. Not for use by several
     threads at once.
 
     >>> simulator = Simulator(shipped_scene("cantilever"))

@@ -109,7 +109,7 @@ class Warper:
     """Warps volumes step by step and keeps memory between the steps.
 
     The owner of a voxel is the lowest-numbered tetrahedron whose closed deformed shape contains the
-    voxel's centre, decided in exact integers. The samples of the sources are read in place: they
+    voxel's center, decided in exact integers. The samples of the sources are read in place: they
     must not change while the Warper exists. Not for use by several threads at once.
 
     Parameters
@@ -308,7 +308,7 @@ def warp(
     **options: Any,
 ) -> WarpResult:
     """Deforms a volume by a mesh: every voxel of the output gets the sample of the source at the
-    rest position of the material that the deformed mesh has moved to the voxel's centre.
+    rest position of the material that the deformed mesh has moved to the voxel's center.
 
     Parameters
     ----------
