@@ -52,10 +52,10 @@ tetwarp_sources(tetwarp host/reference/simulate
 tetwarp_sources(tetwarp host/reference/warp
   backend_reference.cpp overlap.cpp sample.cpp sample_transform.cpp)
 tetwarp_sources(tetwarp host/scene
-  alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp lattice_search.cpp
-  marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp
-  shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp voxel_owner.cpp
-  voxel_shares.cpp)
+  alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp
+  lattice_search.cpp marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp
+  shape_fraction.cpp shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp
+  voxel_owner.cpp voxel_shares.cpp)
 tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
 tetwarp_sources(tetwarp host/simulate/contact_step
@@ -74,15 +74,14 @@ tetwarp_sources(tetwarp host/simulate/run
   simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
   step_records.cpp tet_energies.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
-  contact_shares.cpp contact_system.cpp soft_islands.cpp solver_islands.cpp)
+  contact_shares.cpp contact_system.cpp deformable_solver.cpp general_solver.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem
   contact_constants.cpp contact_islands.cpp contact_laws.cpp contact_rows.cpp contact_sides.cpp
   step_laws.cpp step_problem.cpp step_rows.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/two_level
-  compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp group_matrices.cpp
-  packed_contacts.cpp solved_islands.cpp touching_blocks.cpp touching_sweep.cpp
-  two_level_on_device.cpp two_level_solver.cpp two_level_step.cpp two_level_sweeps.cpp
-  unit_velocities.cpp)
+  compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp group_matrices.cpp island_rows.cpp
+  packed_contacts.cpp touching_blocks.cpp touching_sweep.cpp two_level_on_device.cpp
+  two_level_solver.cpp two_level_step.cpp two_level_sweeps.cpp unit_velocities.cpp)
 tetwarp_sources(tetwarp host/simulate/start
   cage_growth.cpp cage_pose.cpp inset_places.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp
   start_check.cpp start_movers.cpp start_push.cpp start_shrink.cpp)

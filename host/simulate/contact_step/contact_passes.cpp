@@ -8,8 +8,8 @@
 #include "host/base/index_of.hpp"
 #include "host/simulate/contact_step/added_seconds.hpp"
 #include "host/simulate/contact_step/expected_motion.hpp"
+#include "host/simulate/solve/general_solver.hpp"
 #include "host/simulate/step/step_clock.hpp"
-#include "host/simulate/solve/solver_islands.hpp"
 
 namespace tetwarp {
 namespace {
@@ -27,8 +27,8 @@ ContactSystemOptions system_options(const Scene& scene,
   // Islands that these sweeps do not solve are solved by Newton's method: a few contacts with
   // friction between two bodies, as of a stone on an edge, may take thousands of sweeps, and a
   // factorization for few contacts takes as long as about ten. Very tight tolerances take many
-  // sweeps in all scenes, and so do many contacts, see SolverIslands.
-  of.solver.max_sweeps = scene.solver.contact_tolerance < 1e-6 ? SolverIslands::many_sweeps : 300;
+  // sweeps in all scenes, and so do many contacts, see GeneralSolver.
+  of.solver.max_sweeps = scene.solver.contact_tolerance < 1e-6 ? GeneralSolver::many_sweeps : 300;
   // Steps of all islands together: a pile of 1,000 stones takes more than 1,000. A step of the
   // simulation that is not solved is divided.
   of.solver.max_newton = 20000;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 #include "host/base/step_second_fields.hpp"
 #include "host/simulate/start/prepare_start.hpp"
@@ -173,6 +174,28 @@ void MovingBodies::end_part(const StepPart& part, StepSums& sums) {
   add_step(scene_.model, state_.before_part(), state_.get(), input_, supports, sums);
   drive_.accept();
   if (contact_) drive_.delay(contact_->fractions(), part.time_step);
+  if (contact_ && clock_.was_over()) slow_down(contact_->fractions());
+}
+
+/// Where the step is out of time, bodies that moved a part of it only keep that part of their
+/// velocities. Others that nobody has solved would sink them in ever deeper, step after step, and
+/// detection would take ever longer.
+void MovingBodies::slow_down(const std::vector<double>& fractions) {
+  if (std::ranges::all_of(fractions, [](double fraction) { return fraction == 1; })) return;
+  const Model& model = scene_.model;
+  ModelState state = state_.get();
+  for (std::size_t b = 0; b < model.body_rigid.size(); ++b) {
+    const auto slow = [&](Point3& own) { own = times(fractions[b], own); };
+    for (std::int32_t n = model.body_node[b]; n < model.body_node[b + 1]; ++n) {
+      slow(state.velocity[index_of(n)]);
+    }
+    const std::int32_t rigid = model.body_rigid[b], block = model.node_count + 2 * rigid;
+    if (rigid < 0) continue;
+    slow(state.velocity[index_of(block)]);
+    slow(state.velocity[index_of(block + 1)]);
+    slow(state.angular_momentum[index_of(rigid)]);
+  }
+  state_.set(state);
 }
 
 void MovingBodies::end_step(bool may_sleep) {

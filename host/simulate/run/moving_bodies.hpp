@@ -2,6 +2,7 @@
 /// MovingBodies: the bodies of a scene and what moves them, one part of a step at a time.
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "host/simulate/contact_step/contact_step.hpp"
 #include "host/simulate/run/body_sleep.hpp"
@@ -61,6 +62,7 @@ class MovingBodies {
   std::unique_ptr<BodyStepper> make_stepper();
   ResidentState* watch();
   void fill_input(const StepPart& part);
+  void slow_down(const std::vector<double>& fractions);
   bool solve(const StepPart& part, StepAttempt& attempt, ContactPart& contact);
   bool solve_without_waking(const StepPart& part, StepAttempt& attempt, ContactPart& contact);
 

@@ -9,11 +9,11 @@
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 #include "host/simulate/solve/contact_shares.hpp"
+#include "host/simulate/solve/deformable_solver.hpp"
+#include "host/simulate/solve/general_solver.hpp"
 #include "host/simulate/solve/problem/contact_islands.hpp"
 #include "host/simulate/solve/problem/step_laws.hpp"
 #include "host/simulate/solve/problem/step_rows.hpp"
-#include "host/simulate/solve/soft_islands.hpp"
-#include "host/simulate/solve/solver_islands.hpp"
 #include "host/simulate/solve/two_level/resident_two_level.hpp"
 #include "host/simulate/step/resident_contacts.hpp"
 
@@ -27,8 +27,8 @@ struct ContactSystem::State {
         rows(surfaces, of, given.solver.threads),
         islands(surfaces, of),
         laws(surfaces, given.recovery_fraction),
-        soft_islands(surfaces, of, given.solver, given.factors),
-        solver_islands(given.solver) {}
+        deformable_solver(surfaces, of, given.solver, given.factors),
+        general_solver(given.solver) {}
 
   void take_impulses(const ContactShare& share,
                      std::span<const double> impulse,
@@ -52,8 +52,8 @@ struct ContactSystem::State {
   ContactIslands islands;
   StepLaws laws;
   ContactShares shares;
-  SoftIslands soft_islands;
-  SolverIslands solver_islands;
+  DeformableSolver deformable_solver;
+  GeneralSolver general_solver;
   bool is_resident = false;  ///< all velocities that contacts have changed are on the device
   ContactSolution solution;
   std::vector<Point3> impulses;         ///< [block_count]
@@ -87,10 +87,10 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                                       ContactSolveOutcome& outcome) {
   if (shares.soft.is_empty()) return;
   const TwoLevelOutcome solved =
-      soft_islands.solve(stepper,
-                         {state, islands, rows.sides(), rows.rows(), shares.soft.islands,
-                          shares.soft.contacts, laws.problem(), change},
-                         rows, velocity);
+      deformable_solver.solve(stepper,
+                              {state, islands, rows.sides(), rows.rows(), shares.soft.islands,
+                               shares.soft.contacts, laws.problem(), change},
+                              rows, velocity);
   outcome.outer_iterations += solved.outer_iterations;
   outcome.sweeps += solved.sweeps;
   if (!solved.is_result && solved.is_stopped) {
@@ -103,16 +103,16 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
   }
   outcome.converged = solved.converged;
   outcome.residual = solved.residual;
-  take_impulses(shares.soft, soft_islands.impulse(), soft_islands.contact_velocity());
+  take_impulses(shares.soft, deformable_solver.impulse(), deformable_solver.contact_velocity());
 }
 
 void ContactSystem::State::solve_other(BodyStepper& stepper,
                                        std::vector<Point3>& velocity,
                                        ContactSolveOutcome& outcome) {
   if (shares.other.is_empty()) return;
-  solution.report = solver_islands.solve(stepper, islands, rows.rows(), shares.other.islands,
+  solution.report = general_solver.solve(stepper, islands, rows.rows(), shares.other.islands,
                                          shares.other.contacts, laws.problem(), velocity);
-  take_impulses(shares.other, solver_islands.impulse(), solver_islands.contact_velocity());
+  take_impulses(shares.other, general_solver.impulse(), general_solver.contact_velocity());
   const ContactReport& report = solution.report;
   outcome.converged = outcome.converged && (solution.converged() || is_rounding(velocity));
   outcome.residual = std::max(outcome.residual, report.residual.eta);
@@ -186,7 +186,7 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   s.rows.begin(state, contacts);
   s.islands.join(s.rows.sides());
   s.shares.divide(s.islands, s.iterates_two_levels(), s.options.skips_islands);
-  if (s.soft_islands.begin(stepper, s.shares.soft)) {
+  if (s.deformable_solver.begin(stepper, s.shares.soft)) {
     s.rows.set_for_host(s.shares.soft.contacts);
   } else {
     s.rows.set_all();
@@ -201,8 +201,8 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
       change != nullptr && change->size() == velocity.size() ? *change : none;
   s.solve_soft(stepper, state, last_change, velocity, outcome);
   s.solve_other(stepper, velocity, outcome);
-  s.is_resident = (s.shares.soft.is_empty() || s.soft_islands.resident() != nullptr) &&
-                  (s.shares.other.is_empty() || s.solver_islands.resident() != nullptr);
+  s.is_resident = (s.shares.soft.is_empty() || s.deformable_solver.resident() != nullptr) &&
+                  (s.shares.other.is_empty() || s.general_solver.resident() != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.rows.prescribed_impulses(s.solution.impulse, s.impulses);
@@ -217,8 +217,8 @@ void ContactSystem::set_velocities(const std::vector<Point3>& velocity,
                                    BodyStepper& stepper) const {
   const State& s = *state_;
   if (!s.is_resident) return stepper.set_velocities(velocity);
-  if (!s.shares.soft.is_empty()) s.soft_islands.resident()->set_velocities();
-  if (!s.shares.other.is_empty()) s.solver_islands.resident()->set_velocities();
+  if (!s.shares.soft.is_empty()) s.deformable_solver.resident()->set_velocities();
+  if (!s.shares.other.is_empty()) s.general_solver.resident()->set_velocities();
 }
 
 const ContactSolution& ContactSystem::solution() const {

@@ -19,7 +19,7 @@ constexpr std::int32_t chunk_rows = 64;
 void TwoLevelStep::list_chunks(const SystemRows& rows) {
   chunks_.clear();
   for (std::size_t i = 0; i < islands_->list().size(); ++i) {
-    const SolvedIsland& island = islands_->list()[i];
+    const IslandRange& island = islands_->list()[i];
     for (std::int32_t row = island.row_begin; row < island.row_end;) {
       std::int32_t end = std::min(row + chunk_rows, island.row_end);
       if (end < island.row_end && rows.pair[end] == 2) ++end;
@@ -31,7 +31,7 @@ void TwoLevelStep::list_chunks(const SystemRows& rows) {
 }
 
 void TwoLevelStep::set(const StepSystem& system,
-                       const SolvedIslands& islands,
+                       const IslandRows& islands,
                        ElasticSpace& elastic,
                        std::vector<double>& weights) {
   const SystemRows& all = system.rows;
@@ -119,7 +119,7 @@ void TwoLevelStep::step_chunk(std::int64_t c,
                               const std::vector<double>& force,
                               std::vector<double>& y) {
   const Chunk& chunk = chunks_[index_of(c)];
-  const SolvedIsland& island = islands_->list()[index_of(chunk.island)];
+  const IslandRange& island = islands_->list()[index_of(chunk.island)];
   const double omega = island.is_coupled ? relaxation_ : 1;
   double* const d = product_.data();
   const std::int64_t end = 3 * std::int64_t{chunk.row_end};

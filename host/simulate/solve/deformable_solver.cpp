@@ -1,6 +1,6 @@
-/// @file soft_islands.cpp
+/// @file deformable_solver.cpp
 /// Solves on the device where bodies are stepped there, else on the host.
-#include "host/simulate/solve/soft_islands.hpp"
+#include "host/simulate/solve/deformable_solver.hpp"
 
 #include <utility>
 
@@ -17,25 +17,25 @@ std::shared_ptr<RestFactors> given_or_own(std::shared_ptr<RestFactors> factors,
 
 }  // namespace
 
-SoftIslands::SoftIslands(const SceneSurfaces& scene,
-                         const Model& model,
-                         const ContactOptions& options,
-                         std::shared_ptr<RestFactors> factors)
+DeformableSolver::DeformableSolver(const SceneSurfaces& scene,
+                                   const Model& model,
+                                   const ContactOptions& options,
+                                   std::shared_ptr<RestFactors> factors)
     : on_host_(model, options, given_or_own(std::move(factors), model)),
       on_device_(scene, model, options, on_host_.factors()),
       uses_device_(options.backend == Backend::cuda) {}
 
-bool SoftIslands::begin(BodyStepper& stepper, const ContactShare& share) {
+bool DeformableSolver::begin(BodyStepper& stepper, const ContactShare& share) {
   DeviceStepper* const device = uses_device_ && !share.is_empty() ? stepper.on_device() : nullptr;
   const bool can_try = device != nullptr && on_device_.can_take(share.islands);
   resident_ = can_try ? &device->resident_two_level() : nullptr;
   return can_try;
 }
 
-TwoLevelOutcome SoftIslands::solve(BodyStepper& stepper,
-                                   const SoftProblem& all,
-                                   StepRows& rows,
-                                   std::vector<Point3>& velocity) {
+TwoLevelOutcome DeformableSolver::solve(BodyStepper& stepper,
+                                        const SoftProblem& all,
+                                        StepRows& rows,
+                                        std::vector<Point3>& velocity) {
   gather_laws(all.contacts, all.laws, laws_);
   const SoftProblem problem = {all.state, all.islands,  all.sides, all.rows,
                                all.takes, all.contacts, laws_,     all.change};

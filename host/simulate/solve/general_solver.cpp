@@ -1,6 +1,6 @@
-/// @file solver_islands.cpp
+/// @file general_solver.cpp
 /// Chooses the solver for few or for many contacts, and solves on the host or on the device.
-#include "host/simulate/solve/solver_islands.hpp"
+#include "host/simulate/solve/general_solver.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -10,12 +10,12 @@
 
 namespace tetwarp {
 
-SolverIslands::SolverIslands(const ContactOptions& options) : options_(options), of_few_(options) {}
+GeneralSolver::GeneralSolver(const ContactOptions& options) : options_(options), of_few_(options) {}
 
 /// Newton's method follows where sweeps have not converged. One factorization for many contacts
 /// takes as long as hundreds of sweeps, for few contacts as long as about ten: squeezed bodies with
 /// fewer than 200 contacts, which Newton's method solves, keep the lower limit of sweeps.
-ContactSolver& SolverIslands::solver_for(std::size_t contact_count) {
+ContactSolver& GeneralSolver::solver_for(std::size_t contact_count) {
   constexpr std::size_t many_contacts = 200;
   if (contact_count < many_contacts || options_.max_sweeps >= many_sweeps) return of_few_;
   if (of_many_ == nullptr) {
@@ -26,7 +26,7 @@ ContactSolver& SolverIslands::solver_for(std::size_t contact_count) {
   return *of_many_;
 }
 
-bool SolverIslands::can_be_resident(const ContactIslands& islands,
+bool GeneralSolver::can_be_resident(const ContactIslands& islands,
                                     const std::vector<std::uint8_t>& takes,
                                     std::size_t contact_count) const {
   if (options_.backend != Backend::cuda || contact_count == 0) return false;
@@ -36,7 +36,7 @@ bool SolverIslands::can_be_resident(const ContactIslands& islands,
   return true;
 }
 
-ContactReport SolverIslands::solve(BodyStepper& stepper,
+ContactReport GeneralSolver::solve(BodyStepper& stepper,
                                    const ContactIslands& islands,
                                    const ContactRows& rows,
                                    const std::vector<std::uint8_t>& takes,
@@ -54,7 +54,7 @@ ContactReport SolverIslands::solve(BodyStepper& stepper,
                               : solve_on_host(stepper, velocity);
 }
 
-ContactReport SolverIslands::solve_on_host(BodyStepper& stepper, std::vector<Point3>& velocity) {
+ContactReport GeneralSolver::solve_on_host(BodyStepper& stepper, std::vector<Point3>& velocity) {
   with_pattern_ = nullptr;
   part_.set_numbers(stepper.system());
   solution_ = solver_->solve(part_.problem());
@@ -64,7 +64,7 @@ ContactReport SolverIslands::solve_on_host(BodyStepper& stepper, std::vector<Poi
   return solution_.report;
 }
 
-ContactReport SolverIslands::solve_on_device(bool is_other_pattern, std::vector<Point3>& velocity) {
+ContactReport GeneralSolver::solve_on_device(bool is_other_pattern, std::vector<Point3>& velocity) {
   AdhesionState& adhesion = part_.problem().adhesion;
   const bool adheres = std::any_of(adhesion.intensity.begin(), adhesion.intensity.end(),
                                    [](double intensity) { return intensity > 0; });

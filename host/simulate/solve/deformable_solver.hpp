@@ -1,5 +1,5 @@
-/// @file soft_islands.hpp
-/// SoftIslands: contact islands of bodies that A couples, with their contacts.
+/// @file deformable_solver.hpp
+/// DeformableSolver: contact islands of bodies that A couples, with their contacts.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -15,14 +15,14 @@ namespace tetwarp {
 
 /// The two-level iteration: with back end cuda on the device that steps the bodies, if one does.
 /// What does not converge there is solved on the host, from the system of the step.
-class SoftIslands {
+class DeformableSolver {
  public:
   /// @param scene, model  kept by the caller
   /// @param factors       of the elastic bodies, or null: own ones
-  SoftIslands(const SceneSurfaces& scene,
-              const Model& model,
-              const ContactOptions& options,
-              std::shared_ptr<RestFactors> factors);
+  DeformableSolver(const SceneSurfaces& scene,
+                   const Model& model,
+                   const ContactOptions& options,
+                   std::shared_ptr<RestFactors> factors);
 
   /// Begins a solve. @returns whether a device tries first, which needs no rows of contacts
   /// @param stepper  after its solve(), whose velocities are those without contact

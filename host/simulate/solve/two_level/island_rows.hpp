@@ -1,4 +1,4 @@
-/// @file solved_islands.hpp
+/// @file island_rows.hpp
 /// The coupling islands that a TwoLevelSolver takes.
 #pragma once
 #include <cstdint>
@@ -11,13 +11,13 @@
 namespace tetwarp {
 
 /// The rows of a coupling island.
-struct SolvedIsland {
+struct IslandRange {
   std::int32_t row_begin = 0, row_end = 0;
   bool is_coupled = true;     ///< false: a single rigid body
   std::int32_t elastic = -1;  ///< place in ElasticSpace::bodies(), or -1
 };
 
-class SolvedIslands {
+class IslandRows {
  public:
   /// Lists the islands that are taken.
   void set(const SystemRows& rows,
@@ -25,14 +25,14 @@ class SolvedIslands {
            const std::vector<std::uint8_t>& takes,
            const ElasticSpace& elastic);
 
-  const std::vector<SolvedIsland>& list() const { return islands_; }
+  const std::vector<IslandRange>& list() const { return islands_; }
   /// Place in list() of the island of each row with unknowns, or -1.
   std::int32_t of_row(std::int64_t row) const {
     return island_of_row_[static_cast<std::size_t>(row)];
   }
 
  private:
-  std::vector<SolvedIsland> islands_;
+  std::vector<IslandRange> islands_;
   std::vector<std::int32_t> island_of_row_;
 };
 

@@ -1,5 +1,5 @@
-/// @file solver_islands.hpp
-/// SolverIslands: coupling islands of a step that the contact solver takes, with their contacts.
+/// @file general_solver.hpp
+/// GeneralSolver: coupling islands of a step that the contact solver takes, with their contacts.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -18,13 +18,13 @@ namespace tetwarp {
 /// Where a device steps the bodies and A couples no two of them, the problem is built there and its
 /// velocities stay there; the host sends contacts and their laws and reads impulses and velocities.
 /// Everywhere else the problem is built on the host.
-class SolverIslands {
+class GeneralSolver {
  public:
   /// Before Newton's method follows, of many contacts: enough for 200 balls that fall into a box,
   /// whose steps take a tenth of the time that they take with 300 sweeps.
   static constexpr std::int64_t many_sweeps = 5000;
 
-  explicit SolverIslands(const ContactOptions& options);
+  explicit GeneralSolver(const ContactOptions& options);
 
   /// @param stepper   after its solve()
   /// @param takes     [coupling islands] which are taken
