@@ -7,6 +7,7 @@
 /// float64, and the next run solves for the correction, until |r|_{D^-1} <= tolerance |b|_{D^-1},
 /// or |r| is as small as the rounding of A x allows. Source: Hestenes and Stiefel 1952.
 #pragma once
+#include <cmath>
 #include <cstdint>
 
 #include "kernels/base/from_index.hpp"
@@ -165,13 +166,14 @@ struct GradientRoundingOp {
   }
 };
 
-/// x = 0.
+/// x = value.
 template <class T>
-struct GradientZeroOp {
+struct GradientFillOp {
   GradientArrays<T> a;
+  double value;
 
   TETWARP_HD void operator()(std::int64_t row) const {
-    for (std::int64_t k = 3 * row; k < 3 * row + 3; ++k) a.x[k] = 0;
+    for (std::int64_t k = 3 * row; k < 3 * row + 3; ++k) a.x[k] = value;
   }
 };
 
@@ -266,9 +268,14 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
     const PlainSums<2> start = exec.load(&scalars->start);
     const double square = start.value[0], unit = start.value[1];
     if (unit == 0) {  // b = 0
-      exec.for_each(gradient_label(), end - begin, FromIndex<GradientZeroOp<T>>{{a}, begin});
+      exec.for_each(gradient_label(), end - begin, FromIndex<GradientFillOp<T>>{{a, 0}, begin});
       result.residual = 0;
       result.is_converged = true;
+      break;
+    }
+    if (!(square + unit < INFINITY)) {  // b or x are beyond the range of their squares
+      exec.for_each(gradient_label(), end - begin, FromIndex<GradientFillOp<T>>{{a, NAN}, begin});
+      result.residual = INFINITY;
       break;
     }
     result.residual = sqrt(square / unit);

@@ -5,6 +5,7 @@
 /// Products are rounded before they are added: places at the start have the same bits on host and
 /// device, and a point that does not move has the same bits at start and end.
 #pragma once
+#include <cmath>
 #include <cstdint>
 
 #include "kernels/base/view.hpp"
@@ -60,7 +61,8 @@ TETWARP_HD double length3(const double* x) {
 /// The unit vector along x; zero for a zero vector. x and unit may be the same memory.
 TETWARP_HD void unit3(const double* x, double* unit) {
   const double size = length3(x), factor = size > 0 ? 1 / size : 1;
-  for (int i = 0; i < 3; ++i) unit[i] = factor * x[i];
+  const bool is_tiny = !(factor < INFINITY);
+  for (int i = 0; i < 3; ++i) unit[i] = is_tiny ? x[i] / size : factor * x[i];
 }
 /// x turned by a unit quaternion.
 TETWARP_HD void rotate3(const double* q, const double* x, double* turned) {

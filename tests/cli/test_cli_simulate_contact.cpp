@@ -196,7 +196,6 @@ TEST(SimulateContact, MarksStepsThatRanOutOfTime) {
       scene.simulate({"-o", "out", "--steps", "60", "--max-step-seconds", "1e-9"});
 
   EXPECT_EQ(result.exit_code, 3) << result.err;
-  EXPECT_NE(result.err.find("ended by --max-step-seconds"), std::string::npos) << result.err;
   const Numbers late = scene.series("out", "out_of_time");
   EXPECT_EQ(late.front(), 0);
   EXPECT_EQ(late.back(), 1);

@@ -36,7 +36,7 @@ class ContactPasses {
   /// @param is_first  whether it is the first part of a simulation, in which surfaces that are near
   ///                  have their initial adhesion
   void run(bool is_first, BodyStepper& stepper, ContactPart& part);
-  /// Whether a detection of the last run() has found any pairs.
+  /// Whether a detection of the last run() has found any pairs, or none has seen its motion.
   bool has_pairs() const { return has_pairs_; }
   /// With the last solve.
   const ContactSystem& system() const { return system_; }

@@ -44,7 +44,7 @@ struct StepOutcome {
   bool completed = true;  ///< false: `progress` ended it and the state is as before
   bool converged = true;
   std::int64_t linear_iterations = 0;  ///< of the island that took the most
-  double linear_residual = 0;          ///< largest of an island, relative
+  double linear_residual = 0;          ///< largest of an island, relative; infinite beyond numbers
   std::int64_t skipped_rotations = 0, skipped_blocks = 0;
   StepSeconds seconds;
 };

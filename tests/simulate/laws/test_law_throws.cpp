@@ -116,5 +116,19 @@ TEST(ThrownBall, NeverEntersAnElasticBlock) {
   EXPECT_LE(static_cast<double>(clamped), 0.03 * steps);
 }
 
+/// Damping takes spins there: their reciprocals are infinite.
+TEST(Throw, OfABodyWhoseSpinIsBelowNormalNumbersEndsOnTheFloor) {
+  for (const double spin : {1e-160, 1e-300, 1e-310, 5e-324}) {
+    Body box = rigid_box("box", {0.05, 0.05, 0.05}, {0, 0, 0.1});
+    box.angular_velocity = {spin, 0, -spin};
+    box.velocity = {0, 0, -2};
+    Simulator simulator(floor_scene({box}, 0.01, 0));
+    for (int n = 0; n < 10; ++n) {
+      simulator.step();
+      EXPECT_GT(simulator.record().smallest_distance, 0) << spin << " " << n;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetwarp::test
