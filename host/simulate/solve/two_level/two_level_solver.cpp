@@ -116,7 +116,10 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
     if (next == TwoLevelControl::Next::diverges) return End::diverges;
     if (sweeps_.operations() > most_operations) return End::fails;
     stepped_ = impulse_;
-    outcome.sweeps += sweeps_.run(working_, control.enough(), y_, impulse_);
+    const auto goes_on = [&](std::int64_t sweeps) {
+      return !options_.progress || options_.progress({clock_.seconds(), outcome.sweeps + sweeps, 0});
+    };
+    outcome.sweeps += sweeps_.run(working_, control.enough(), y_, impulse_, goes_on);
     ++outcome.outer_iterations;
     step_.add_elastic(blocks_, stepped_.data(), impulse_.data(), y_);
     const View<const double> before{x_.data() + begin, size};
@@ -126,9 +129,7 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
       mixer.advance(before, image);
     }
     std::copy_n(y_.data() + begin, size, x_.data() + begin);
-    if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
-      return End::is_stopped;
-    }
+    if (!goes_on(0)) return End::is_stopped;
   }
   return End::fails;
 }

@@ -45,6 +45,10 @@ void TwoLevelSweeps::scatter_impulses(const std::vector<std::int32_t>& list,
   }
 }
 
+bool TwoLevelSweeps::is_over(const Progress& progress) const {
+  return progress.sweeps >= most_sweeps() || !progress.goes_on(progress.sweeps);
+}
+
 /// One sweep over the contacts that work. @returns the norm of the change in its energy
 double TwoLevelSweeps::sweep_all(const std::vector<std::int32_t>& working,
                                  const Progress& progress) {
@@ -82,14 +86,14 @@ void TwoLevelSweeps::sweep_accelerated(const std::vector<std::int32_t>& list,
                           {accelerated_.data(), Accelerator::columns * size});
   gather_impulses(list, progress.impulse);
   const View<double> image{swept_.data(), size};
-  while (progress.sweeps < most_sweeps()) {
+  while (!is_over(progress)) {
     before_ = swept_;
     motion_.keep(progress.y);
     const View<const double> before{before_.data(), size};
     sweep_.run(list, progress.y, swept_.data());
     ++progress.sweeps;
     accelerator.observe(before, image);
-    if (accelerator.defect() <= progress.enough || progress.sweeps == most_sweeps()) break;
+    if (accelerator.defect() <= progress.enough || is_over(progress)) break;
     unaccelerated_ = swept_;
     if (accelerator.advance(before, image)) follow(accelerator);
   }
@@ -137,10 +141,11 @@ void TwoLevelSweeps::list_changing(const std::vector<std::int32_t>& working,
 std::int64_t TwoLevelSweeps::run(std::vector<std::int32_t>& working,
                                  double enough,
                                  std::vector<double>& y,
-                                 std::vector<double>& impulse) {
-  Progress progress{y.data(), impulse.data(), enough, 0};
+                                 std::vector<double>& impulse,
+                                 const std::function<bool(std::int64_t)>& goes_on) {
+  Progress progress{y.data(), impulse.data(), enough, goes_on, 0};
   sweep_.begin(working);
-  while (!working.empty() && progress.sweeps < most_sweeps()) {
+  while (!working.empty() && !is_over(progress)) {
     ++progress.sweeps;
     if (sweep_all(working, progress) <= enough) break;
     list_changing(working, progress);

@@ -2,6 +2,7 @@
 /// The accelerated sweeps of an iteration of a TwoLevelSolver.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "host/simulate/solve/problem/following_motion.hpp"
@@ -24,11 +25,13 @@ class TwoLevelSweeps {
   /// @param working  contacts that have an impulse or are off their law; sorted by this
   /// @param y        in and out, as TouchingBlocks has it
   /// @param impulse  in and out, [3 contacts]
+  /// @param goes_on  (sweeps): false ends them
   /// @returns the sweeps
   std::int64_t run(std::vector<std::int32_t>& working,
                    double enough,
                    std::vector<double>& y,
-                   std::vector<double>& impulse);
+                   std::vector<double>& impulse,
+                   const std::function<bool(std::int64_t)>& goes_on);
   /// Multiplications of all sweeps since set().
   std::int64_t operations() const { return sweep_.operations(); }
 
@@ -38,10 +41,12 @@ class TwoLevelSweeps {
     double* y;
     double* impulse;
     double enough;
+    const std::function<bool(std::int64_t)>& goes_on;
     std::int64_t sweeps;
   };
 
   std::int64_t most_sweeps() const;
+  bool is_over(const Progress& progress) const;
   double sweep_all(const std::vector<std::int32_t>& working, const Progress& progress);
   void list_changing(const std::vector<std::int32_t>& working, const Progress& progress);
   void sweep_listed(const std::vector<std::int32_t>& list, Progress& progress);
