@@ -29,7 +29,7 @@ nb::tuple tuple_of(const Point3& x) {
 
 nb::dict dict_of(const BodyRecord& body) {
   nb::dict all;
-  all["centre"] = tuple_of(body.center);
+  all["center"] = tuple_of(body.center);
   all["velocity"] = tuple_of(body.velocity);
   all["angular_momentum"] = tuple_of(body.angular_momentum);
   all["contact_force"] = tuple_of(body.contact_force);
@@ -79,6 +79,7 @@ nb::dict dict_of(const StepRecord& record) {
   all["linear_iterations"] = record.linear_iterations;
   all["linear_residual"] = record.linear_residual;
   all["converged"] = record.converged;
+  all["out_of_time"] = record.out_of_time;
   all["contacts"] = record.contacts;
   all["contact_passes"] = record.contact_passes;
   all["clamped_islands"] = record.clamped_islands;
@@ -212,16 +213,17 @@ void bind_simulate(nb::module_& module) {
           "__init__",
           [](SceneSimulator* self, const std::string& file, const std::string& text,
              const std::string& folder, const std::string& backend, int device, int threads,
-             bool untangle) {
+             bool untangle, double max_step_seconds) {
             SimulateOptions options;
             options.backend = choice<Backend>("backend", backend);
             options.device = device;
             options.threads = threads;
             options.untangle = untangle;
+            options.max_step_seconds = max_step_seconds;
             new (self) SceneSimulator(load_scene(file, text, folder), std::move(options));
           },
           nb::arg("file"), nb::arg("text"), nb::arg("folder"), nb::kw_only(), nb::arg("backend"),
-          nb::arg("device"), nb::arg("threads"), nb::arg("untangle"))
+          nb::arg("device"), nb::arg("threads"), nb::arg("untangle"), nb::arg("max_step_seconds"))
       .def("step", &SceneSimulator::step, nb::arg("progress").none())
       .def_prop_ro("names",
                    [](SceneSimulator& self) { return names_in(self.idle().scene().bodies); })

@@ -187,3 +187,13 @@ def test_bodies_are_named():
     surface = simulator.surface("box")
     assert surface.triangles.max() < len(surface.points)
     assert simulator.jacobians("box").shape == simulator.stresses("box").shape
+
+
+def test_a_step_may_be_given_a_time():
+    scene = tetwarp.shipped_scene("cantilever")
+    free, limited = (tetwarp.Simulator(scene, max_step_seconds=s) for s in (float("inf"), 1e6))
+    assert free.step(3) and limited.step(3)
+    assert (free.positions("beam") == limited.positions("beam")).all()
+    assert limited.record().out_of_time is False
+    with pytest.raises(ValueError, match="max_step_seconds: expected more than 0"):
+        tetwarp.Simulator(scene, max_step_seconds=0)

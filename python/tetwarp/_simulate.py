@@ -105,6 +105,8 @@ class Simulator:
     backend : ``"auto"``, ``"cpu"``, ``"cuda"`` or ``"reference"``
     device, threads : number of a CUDA device; threads of the CPU, 0: all (the same bits)
     untangle : elastic bodies and cloth that intersect at the start are shrunk and grow back
+    max_step_seconds : wall time of a step, after which its solves end with what they have;
+        ``record().out_of_time`` tells. Results then depend on the clock
 
     Raises
     ------
@@ -133,6 +135,7 @@ class Simulator:
         device: int = 0,
         threads: int = 0,
         untangle: bool = False,
+        max_step_seconds: float = float("inf"),
     ) -> None:
         if isinstance(scene, dict):
             file, text = "scene", json.dumps(scene, default=_plain)
@@ -145,6 +148,7 @@ class Simulator:
         self._simulator = _core.Simulator(
             file, text, os.fspath(folder), backend=backend, device=int(device),
             threads=int(threads), untangle=bool(untangle),
+            max_step_seconds=float(max_step_seconds),
         )
         self.names: list[str] = list(self._simulator.names)
 
