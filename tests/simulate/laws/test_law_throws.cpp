@@ -116,6 +116,41 @@ TEST(ThrownBall, NeverEntersAnElasticBlock) {
   EXPECT_LE(static_cast<double>(clamped), 0.03 * steps);
 }
 
+/// A capsule that rolls about its axis and turns about the vertical dips one end below the other in
+/// every step, by up to half of the product of both angles and its length: here as far as the
+/// thickness. It goes on at its speed.
+TEST(Throw, OfACapsuleThatRollsAndTurnsIsNotHeldUp) {
+  const double quarter = std::acos(-1.0) / 2;
+  for (const double thickness : {2e-6, 5e-6, 2e-5}) {
+    for (const double turn : {0.5, 1.0, -1.0, 2.0}) {
+      Body capsule;
+      capsule.name = "capsule";
+      capsule.kind = BodyKind::rigid;
+      capsule.geometry = Shape{CapsuleShape{.radius = 0.024, .length = 0.055}};
+      capsule.pose.position = {0, 0, 0.0245};
+      capsule.pose.rotation = {std::cos(quarter / 2), 0, std::sin(quarter / 2), 0};
+      capsule.velocity = {0.7, 0.2, -0.3};
+      capsule.angular_velocity = {5, 0, turn};
+      Scene scene = floor_scene({capsule}, 0.01, 0);
+      scene.thickness = thickness;
+      scene.solver.contact_tolerance = 1e-6;
+      Simulator simulator(scene);
+      std::int64_t clamped = 0;
+      for (int n = 0; n < 100; ++n) {
+        simulator.step();
+        clamped += simulator.record().clamped_islands;
+        if (n > 20) {
+          EXPECT_GT(simulator.record().smallest_distance, 0.5 * thickness)
+              << thickness << " " << turn << " " << n;
+        }
+      }
+      EXPECT_EQ(clamped, 0) << thickness << " " << turn;
+      const Point3 v = simulator.record().bodies[0].velocity;
+      EXPECT_NEAR(std::hypot(v[0], v[1]), std::hypot(0.7, 0.2), 1e-9);
+    }
+  }
+}
+
 /// Damping takes spins there: their reciprocals are infinite.
 TEST(Throw, OfABodyWhoseSpinIsBelowNormalNumbersEndsOnTheFloor) {
   for (const double spin : {1e-160, 1e-300, 1e-310, 5e-324}) {
