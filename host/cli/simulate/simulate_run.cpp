@@ -340,8 +340,7 @@ void SimulateRun::finish() {
   if (result_.late_steps > 0) {
     result_.warnings.push_back(fmt::format(
         "{}: the solves of {} of {} steps ended by --max-step-seconds (series.h5: out_of_time)",
-        arguments_.scene(), result_.late_steps,
-        simulator_->step_index() - result_.first_step));
+        arguments_.scene(), result_.late_steps, simulator_->step_index() - result_.first_step));
   }
   if (result_.unconverged_steps > 0) {
     result_.warnings.push_back(fmt::format(

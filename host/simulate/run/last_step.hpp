@@ -17,7 +17,7 @@ struct LastStep {
   ContactPart contact;
   StepSums sums;
   std::int64_t substeps = 0;
-  bool is_out_of_time = false;  ///< its solves ended by SimulateOptions::max_step_seconds
+  bool is_out_of_time = false;       ///< its solves ended by SimulateOptions::max_step_seconds
   std::vector<ContactPoint> points;  ///< at the end of the step
   double work = 0;                   ///< of all steps [J]
 };

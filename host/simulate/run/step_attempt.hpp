@@ -13,9 +13,9 @@ struct StepAttempt {
   bool is_finite = true;
   int parts = 0;             ///< that have been made
   bool is_given_up = false;  ///< with more parts the step may become better
-  StepOutcome outcome;  ///< of all parts
-  ContactPart contact;  ///< of all parts
-  StepSums sums;        ///< of all parts
+  StepOutcome outcome;       ///< of all parts
+  ContactPart contact;       ///< of all parts
+  StepSums sums;             ///< of all parts
 };
 
 /// Adds counts of a later part, and its largest residual; no seconds.

@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 void TouchingBlocks::set(const StepSystem& system,
-                         const IslandRows& islands,
+                         const TakenIslands& islands,
                          const ElasticSpace& elastic,
                          const ContactRows& rows,
                          const std::vector<std::int32_t>& contacts,
@@ -25,7 +25,7 @@ void TouchingBlocks::set(const StepSystem& system,
 
 /// The parts of all contacts, and the rows that they touch.
 void TouchingBlocks::set_parts(const StepSystem& system,
-                               const IslandRows& islands,
+                               const TakenIslands& islands,
                                const ElasticSpace& elastic,
                                const ContactRows& rows,
                                const std::vector<std::int32_t>& contacts) {
@@ -126,7 +126,7 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
 
 /// J, velocities for unit impulses, and the block of each contact.
 void TouchingBlocks::set_responses(const ContactRows& rows,
-                                   const IslandRows& islands,
+                                   const TakenIslands& islands,
                                    const ElasticSpace& elastic,
                                    const DiagonalInverse<double>& inverse,
                                    double relaxation) {

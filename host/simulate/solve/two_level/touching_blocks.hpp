@@ -9,7 +9,7 @@
 #include "host/simulate/solve/problem/contact_constants.hpp"
 #include "host/simulate/solve/problem/contact_rows.hpp"
 #include "host/simulate/solve/two_level/elastic_space.hpp"
-#include "host/simulate/solve/two_level/island_rows.hpp"
+#include "host/simulate/solve/two_level/taken_islands.hpp"
 #include "kernels/body/row_product.hpp"
 
 namespace tetwarp {
@@ -45,7 +45,7 @@ class TouchingBlocks {
   /// @param contacts    numbers of the contacts in `rows`
   /// @param relaxation  omega of rows that A couples to others; of single rigid bodies it is 1
   void set(const StepSystem& system,
-           const IslandRows& islands,
+           const TakenIslands& islands,
            const ElasticSpace& elastic,
            const ContactRows& rows,
            const std::vector<std::int32_t>& contacts,
@@ -101,13 +101,13 @@ class TouchingBlocks {
   /// Threads of loops over contacts: with few contacts starting threads takes longer than the loop.
   int threads() const { return count() < 256 ? 1 : threads_; }
   void set_parts(const StepSystem& system,
-                 const IslandRows& islands,
+                 const TakenIslands& islands,
                  const ElasticSpace& elastic,
                  const ContactRows& rows,
                  const std::vector<std::int32_t>& contacts);
   void set_jacobian(const ContactRows& rows, std::size_t contact);
   void set_responses(const ContactRows& rows,
-                     const IslandRows& islands,
+                     const TakenIslands& islands,
                      const ElasticSpace& elastic,
                      const DiagonalInverse<double>& inverse,
                      double relaxation);

@@ -117,7 +117,8 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
     if (sweeps_.operations() > most_operations) return End::fails;
     stepped_ = impulse_;
     const auto goes_on = [&](std::int64_t sweeps) {
-      return !options_.progress || options_.progress({clock_.seconds(), outcome.sweeps + sweeps, 0});
+      return !options_.progress ||
+             options_.progress({clock_.seconds(), outcome.sweeps + sweeps, 0});
     };
     outcome.sweeps += sweeps_.run(working_, control.enough(), y_, impulse_, goes_on);
     ++outcome.outer_iterations;
@@ -162,8 +163,8 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   }
   outcome.is_stopped = end == End::is_stopped;
   outcome.converged = end == End::converges;
-  outcome.is_result = outcome.converged || ((outcome.is_stopped || !is_small()) &&
-                                            std::isfinite(best_.residual));
+  outcome.is_result =
+      outcome.converged || ((outcome.is_stopped || !is_small()) && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) take_best(outcome);
   step_.for_each_row([&](std::int32_t row) {

@@ -78,7 +78,7 @@ class TwoLevelSolver {
   double relaxation_;  ///< omega
   Stopwatch clock_;    ///< since the start of the solve
   std::shared_ptr<RestFactors> factors_;
-  IslandRows islands_;
+  TakenIslands islands_;
   ElasticSpace elastic_;
   TouchingBlocks blocks_;
   TwoLevelStep step_;

@@ -31,7 +31,7 @@ void TwoLevelStep::list_chunks(const SystemRows& rows) {
 }
 
 void TwoLevelStep::set(const StepSystem& system,
-                       const IslandRows& islands,
+                       const TakenIslands& islands,
                        ElasticSpace& elastic,
                        std::vector<double>& weights) {
   const SystemRows& all = system.rows;

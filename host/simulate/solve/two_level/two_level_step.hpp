@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/simulate/solve/two_level/elastic_space.hpp"
-#include "host/simulate/solve/two_level/island_rows.hpp"
+#include "host/simulate/solve/two_level/taken_islands.hpp"
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
 #include "kernels/body/row_product.hpp"
 
@@ -22,7 +22,7 @@ class TwoLevelStep {
   /// @param islands, elastic  kept by the caller
   /// @param weights           out: diagonal of A, [rows][3]; 0 outside of the islands
   void set(const StepSystem& system,
-           const IslandRows& islands,
+           const TakenIslands& islands,
            ElasticSpace& elastic,
            std::vector<double>& weights);
 
@@ -60,7 +60,7 @@ class TwoLevelStep {
   /// Rows of an island that one task takes.
   struct Chunk {
     std::int32_t row_begin = 0, row_end = 0;
-    std::int32_t island = 0;  ///< in IslandRows::list()
+    std::int32_t island = 0;  ///< in TakenIslands::list()
   };
 
   void list_chunks(const SystemRows& rows);
@@ -73,7 +73,7 @@ class TwoLevelStep {
   const Model& model_;
   double relaxation_;
   int threads_;
-  const IslandRows* islands_ = nullptr;
+  const TakenIslands* islands_ = nullptr;
   ElasticSpace* elastic_ = nullptr;
   std::vector<Chunk> chunks_;
   std::vector<double> inverse_;

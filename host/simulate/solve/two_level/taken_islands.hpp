@@ -1,4 +1,4 @@
-/// @file island_rows.hpp
+/// @file taken_islands.hpp
 /// The coupling islands that a TwoLevelSolver takes.
 #pragma once
 #include <cstdint>
@@ -17,7 +17,7 @@ struct IslandRange {
   std::int32_t elastic = -1;  ///< place in ElasticSpace::bodies(), or -1
 };
 
-class IslandRows {
+class TakenIslands {
  public:
   /// Lists the islands that are taken.
   void set(const SystemRows& rows,

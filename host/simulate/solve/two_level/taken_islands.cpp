@@ -1,14 +1,14 @@
-/// @file island_rows.cpp
+/// @file taken_islands.cpp
 /// Finds the rows of the islands.
-#include "host/simulate/solve/two_level/island_rows.hpp"
+#include "host/simulate/solve/two_level/taken_islands.hpp"
 #include "host/base/index_of.hpp"
 
 namespace tetwarp {
 
-void IslandRows::set(const SystemRows& rows,
-                     const ContactIslands& islands,
-                     const std::vector<std::uint8_t>& takes,
-                     const ElasticSpace& elastic) {
+void TakenIslands::set(const SystemRows& rows,
+                       const ContactIslands& islands,
+                       const std::vector<std::uint8_t>& takes,
+                       const ElasticSpace& elastic) {
   islands_.clear();
   island_of_row_.assign(index_of(rows.unknown_count), -1);
   std::int32_t last = -1;
