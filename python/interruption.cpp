@@ -1,5 +1,5 @@
 /// @file interruption.cpp
-/// Calls of one object at the same time are refused.
+/// Refuses a call of an object in which another call runs.
 #include "python/interruption.hpp"
 
 #include <stdexcept>

@@ -60,8 +60,8 @@ class Interruption {
   std::exception_ptr error_;
 };
 
-/// While one exists for a flag, a second one is an error: the library's objects do not allow calls
-/// at the same time, which threads of Python or a progress callback could make.
+/// Marks an object as busy during a call. Threads of Python and progress callbacks could call it
+/// again meanwhile, which the objects of the library do not allow.
 class OneCall {
  public:
   /// @throws std::runtime_error  a call of this object is running

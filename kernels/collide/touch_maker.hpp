@@ -325,9 +325,9 @@ class TouchMaker {
   }
 
   /// Sets the gap and moves the points along the normal until they are `gap` apart. Of surfaces
-  /// that are near at the start, and in detections after the first, the gap is less by what the
-  /// bend of the ways brings them nearer in the motion: a body that spins while it turns over dips
-  /// by that in every step, beyond the thickness, although its contacts hold it.
+  /// that are near at the start, and in detections after the first, the gap is reduced by as much
+  /// as the bend of the ways brings them nearer. Otherwise a body that rolls and turns would come
+  /// nearer by that in every step, by more than the thickness, although its contacts are solved.
   /// @param start_a, start_b  the nearest points, without radii
   TETWARP_ANY_EXEC void set_gap(const Vec3& start_a, const Vec3& start_b) {
     for (int k = 0; k < 3; ++k) {
@@ -343,7 +343,9 @@ class TouchMaker {
     if (touch_.distance >= view_.thickness) touch_.gap = max_of(touch_.gap, 0.0);
     if (touch_.pass > 0 || touch_.distance < 2 * view_.thickness) {
       const Vec3 bend = minus(bend_of(touch_.body_a, start_a), bend_of(touch_.body_b, start_b));
-      touch_.gap += min_of(dot(touch_.normal, bend), 0.0);
+      const double dip = min_of(dot(touch_.normal, bend), 0.0);
+      touch_.gap += dip;
+      touch_.way = minus(touch_.way, times(dip, touch_.normal));  // which contains it, too
     }
     const double extra = apart - touch_.gap, share_a = share_of_a();
     touch_.point_a = minus(touch_.point_a, times(share_a * extra, touch_.normal));

@@ -58,7 +58,7 @@ __device__ __forceinline__ void decide_by_lanes(AndersonState& state, int lane) 
   }
 }
 
-/// The stage "decide" within one launch.
+/// As AndersonDecideOp on one thread, by the lanes of an island.
 template <class Team>
 __device__ __forceinline__ void anderson_decide(IslandExec<Team>& exec, AndersonState* state) {
   static_assert(sizeof(AndersonState::sums) <= sizeof(LargestSum));

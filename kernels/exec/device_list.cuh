@@ -1,5 +1,5 @@
 /// @file device_list.cuh
-/// A list in memory of a device that a stage appends to, and the bodies that append.
+/// A list in memory of a device that a stage appends to, and the ops that append.
 #pragma once
 #include <cstdint>
 
@@ -50,10 +50,10 @@ struct WritingEmit {
   __device__ void tally(std::int64_t) {}
 };
 
-/// One index = one index of the body.
+/// One index = one index of the op.
 template <class Op>
 struct AppendCountOp {
-  static constexpr int resident_blocks = 1;  ///< else registers of some bodies are spilled
+  static constexpr int resident_blocks = 1;  ///< else registers of some ops are spilled
 
   Op op;
   View<std::int64_t> counts, tallies;  ///< out
@@ -77,7 +77,7 @@ struct AppendTotalsOp {
 };
 template <class Op, class T>
 struct AppendWriteOp {
-  static constexpr int resident_blocks = 1;  ///< else registers of some bodies are spilled
+  static constexpr int resident_blocks = 1;  ///< else registers of some ops are spilled
 
   Op op;
   View<const std::int64_t> first;

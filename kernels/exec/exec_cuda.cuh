@@ -119,7 +119,7 @@ class CudaExec : public DeviceCopies {
     sum_to(label, first, last, SingleRuns<Op>{op}, out);
   }
   /// Sums op(i) for i in [0, count), and calls op.finish(total, k) for k in [0, sum_group).
-  /// A body with a constant `lanes` is called by so many lanes together.
+  /// An op with a constant `lanes` is called by so many lanes together.
   /// @pre sums has room for `count` counts, in groups of sum_group / lanes
   template <class Op>
   void grouped_scan(const char* label, std::int64_t count, const Op& op, const GroupedSums& sums) {
@@ -131,7 +131,7 @@ class CudaExec : public DeviceCopies {
     timed(label, [&] { cuda_exclusive_scan(stream(), scratch_, values); });
   }
 
-  /// Replaces the list by what op(i, emit) appends; see CpuExec::append(). Runs the body twice:
+  /// Replaces the list by what op(i, emit) appends; see CpuExec::append(). Runs the op twice:
   /// to count, and to write. Waits for the counts.
   template <class Op, class T>
   void append(const char* label,

@@ -8,7 +8,7 @@
 
 namespace tetwarp {
 
-/// How a body talks to the other lanes of its item. All four call each function.
+/// How an op exchanges numbers with the other lanes of its item. All four call each function.
 struct FourLanes {
   int lane;       ///< 0 to 3
   unsigned mask;  ///< the four within their warp

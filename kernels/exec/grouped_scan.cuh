@@ -62,8 +62,8 @@ __device__ __forceinline__ std::int64_t sum_groups(std::int64_t* groups,
   return total;
 }
 
-/// Sums op(i) for i in [0, count), then calls op.finish(total, k) for k in [0, sum_group). A
-/// body with a constant `lanes` is called by four lanes as op(i, FourLanes).
+/// Sums op(i) for i in [0, count), then calls op.finish(total, k) for k in [0, sum_group). An
+/// op with a constant `lanes` is called by four lanes as op(i, FourLanes).
 ///
 /// Blocks: one per group. Threads: sum_group. No block waits for another.
 /// @param sums    of sum_group / lanes counts per group

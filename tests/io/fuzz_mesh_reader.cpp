@@ -1,5 +1,5 @@
 /// @file fuzz_mesh_reader.cpp
-/// tetwarp-read for fuzz_mesh: tells which code has crashed.
+/// tetwarp-read for fuzz_mesh: writes the call stack of a crash to a file.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <fcntl.h>

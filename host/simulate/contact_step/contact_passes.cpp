@@ -71,7 +71,7 @@ void ContactPasses::run(bool is_first, BodyStepper& stepper, ContactPart& part) 
   }
   const AddedSeconds seconds(part.seconds.detection);
   parts_.motion.shorten({});
-  has_pairs_ = true;  // of this motion nobody knows, so that it is checked
+  has_pairs_ = true;  // no detection has searched this motion, so the end check has to
 }
 
 /// Whether the step has no time for more solves.

@@ -177,9 +177,9 @@ void MovingBodies::end_part(const StepPart& part, StepSums& sums) {
   if (contact_ && clock_.was_over()) slow_down(contact_->fractions());
 }
 
-/// Where the step is out of time, bodies that moved a part of it only keep that part of their
-/// velocities. Others that nobody has solved would sink them in ever deeper, step after step, and
-/// detection would take ever longer.
+/// Where the step is out of time, bodies that moved only a part of it keep that part of their
+/// velocities. With all of them, gravity would add speed in every step in which they are stopped:
+/// the motion without contact would reach ever farther into other bodies, with ever more pairs.
 void MovingBodies::slow_down(const std::vector<double>& fractions) {
   if (std::ranges::all_of(fractions, [](double fraction) { return fraction == 1; })) return;
   const Model& model = scene_.model;

@@ -120,8 +120,9 @@ void ContactSystem::State::solve_other(BodyStepper& stepper,
   outcome.outer_iterations += report.outer_iterations;
 }
 
-/// Whether the contacts of the contact solver neither change nor approach at velocities that stand
-/// above the rounding of those of the bodies: eta, which is relative to both, is noise then.
+/// Whether the contacts of the contact solver change velocities and approach by so little, relative
+/// to the velocities of the bodies, that rounding of these exceeds the tolerance of eta, which is
+/// relative to both. At most 1e-10, however tight the tolerance is.
 bool ContactSystem::State::is_rounding(const std::vector<Point3>& velocity) const {
   double speed = 0, change = 0;
   for (std::int32_t b = 0; b < model.block_count(); ++b) {
@@ -133,7 +134,7 @@ bool ContactSystem::State::is_rounding(const std::vector<Point3>& velocity) cons
     change = std::max(change, norm(minus(after, before)));
   }
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
-  const double least = rounding / options.solver.tolerance * speed;
+  const double least = std::min(rounding / options.solver.tolerance, 1e-10) * speed;
   return change <= least && std::ranges::all_of(shares.other.contacts, [&](std::int32_t c) {
            return solution.velocity[3 * index_of(c)] >= -least;
          });

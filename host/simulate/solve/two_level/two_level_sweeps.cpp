@@ -86,7 +86,7 @@ void TwoLevelSweeps::sweep_accelerated(const std::vector<std::int32_t>& list,
                           {accelerated_.data(), Accelerator::columns * size});
   gather_impulses(list, progress.impulse);
   const View<double> image{swept_.data(), size};
-  while (!is_over(progress)) {
+  while (progress.sweeps < most_sweeps()) {
     before_ = swept_;
     motion_.keep(progress.y);
     const View<const double> before{before_.data(), size};
