@@ -62,6 +62,8 @@ class PairState {
   std::int64_t tet_count() const { return mesh_.tet_count(); }
   std::int64_t unchanged_count() const { return is_update_ ? tet_count() - moved_count_ : 0; }
   std::int64_t candidate_count() const { return pair_total_; }
+  /// About the number of pairs of a step, the same in many steps; 0: not known yet.
+  std::int64_t usual_pairs() const { return usual_pairs_; }
 
  protected:
   template <class T>
@@ -130,6 +132,7 @@ class PairState {
   bool is_update_ = false, was_update_ = false;  ///< of this step and of the one before
   std::int64_t moved_count_ = 0;
   std::int64_t pair_total_ = 0;
+  std::int64_t usual_pairs_ = 0;
 };
 
 }  // namespace tetwarp

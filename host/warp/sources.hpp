@@ -14,6 +14,7 @@
 
 #include "host/base/warp_backend.hpp"
 #include "host/warp/geometry.hpp"
+#include "kernels/warp/packed_source.hpp"
 #include "kernels/warp/volume_prefilter.hpp"
 #include "kernels/warp/volume_range.hpp"
 #include "kernels/warp/volume_uniform.hpp"
@@ -59,6 +60,25 @@ class WarpSources {
     return view;
   }
 
+  /// Source s packed, from its first use on; null where that would take more than a tenth of the
+  /// device's free memory.
+  template <class T>
+  const PackedSample<T>* packed(std::size_t s, const SourceView<T>& view) {
+    Source& source = sources_[s];
+    const std::int64_t voxels = plan_.source_region.voxel_count();
+    const auto bytes = static_cast<std::int64_t>(sizeof(PackedSample<T>)) * voxels;
+    const bool is_first = !source.is_packed.has_value();
+    if (is_first) {
+      source.is_packed =
+          static_cast<double>(bytes) <= free_device_memory(plan_.options.device) / 10;
+    }
+    if (!*source.is_packed) return nullptr;
+    source.packed.reserve(bytes);
+    auto* const samples = reinterpret_cast<PackedSample<T>*>(source.packed.view(bytes).data);
+    if (is_first) pack_source(exec_, PackSourceOp<T>{view, {samples, voxels}});
+    return samples;
+  }
+
   /// The regions where source s, or the coefficients that the filter reads, have one value; an
   /// empty map when no cell can be filled.
   /// @param tets, rest  as in volume_uniform()
@@ -100,7 +120,8 @@ class WarpSources {
 
   struct Source {
     const std::byte* data = nullptr;
-    Buffer<std::byte> buffer;
+    Buffer<std::byte> buffer, packed;
+    std::optional<bool> is_packed;
     Buffer<std::uint8_t> reach;
     std::optional<UniformMap> uniform;
     std::tuple<Found<float>, Found<double>> found;

@@ -18,6 +18,7 @@
 #include "host/warp/step_shares.hpp"
 #include "host/warp/totals.hpp"
 #include "host/warp/transforms.hpp"
+#include "kernels/warp/cell_class.hpp"
 #include "kernels/warp/cell_work.hpp"
 #include "kernels/warp/voxel_cells.hpp"
 #include "kernels/warp/voxel_count.hpp"
@@ -198,6 +199,7 @@ class WarpPipeline : public WarpBackend {
       job.nodes = pairs_.nodes();
       job.pairs = pairs_.list().pairs;
       job.ranges = {pairs_.list().ranges.data, frame.cell_count()};
+      job.usual_pairs = pairs_.usual_pairs();
       job.frame = frame;
       job.source = sources_.template view<T>(s);
       job.filter = plan_.options.filter;
@@ -214,12 +216,19 @@ class WarpPipeline : public WarpBackend {
       job.transforms = transforms_.transforms(s, pairs_.tet_count());
       job.outside_transform = transforms_.outside();
       job.reorientation = transforms_.reorientation(s);
+      const bool has_groups = plan_.options.expert.skip.interior_cells &&
+                              plan_.options.intensity != Intensity::conservative;
+      if constexpr (!Exec::reads_are_free && can_blend<T> && sizeof(ArithmeticOf<T>) == 4) {
+        if (has_groups && has_plain_cells(job)) {
+          job.packed = sources_.packed(s, job.source);
+        }
+      }
       const CellWorkOp<T> work = work_of_cells(s, job);
       if (plan_.options.intensity == Intensity::conservative) {
         cell_work(exec_, work);
         overlap(s, work.job, part);
       } else {
-        cell_raster_.run(exec_, work, plan_.options.expert.skip.interior_cells,
+        cell_raster_.run(exec_, work, has_groups,
                          s == 0 ? &pairs_.counters()->lists : nullptr, part);
       }
       if (totals_.are_requested()) {

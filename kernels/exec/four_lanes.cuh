@@ -13,7 +13,7 @@ struct FourLanes {
   int lane;       ///< 0 to 3
   unsigned mask;  ///< the four within their warp
 
-  /// The value of another lane, of one or more numbers of float64.
+  /// The value of another lane, of one or more numbers of 64 bits.
   template <class T>
   TETWARP_HD T of(int other, T value) const {
 #if defined(__CUDA_ARCH__)

@@ -67,9 +67,12 @@ struct CellCullOp {
   TETWARP_HD CellPair operator()(std::int64_t t, std::int64_t local, std::int64_t item) const {
     const TetSetup& tet = setups[t];
     std::int64_t cell[3], box = 1;
+    auto rest = static_cast<std::uint32_t>(local);  // pairs are numbered by 32 bits
     for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t first = first_cell(tet, axis), count = last_cell(tet, axis) - first + 1;
-      cell[axis] = first + local / box % count;
+      const int first = first_cell(tet, axis);
+      const auto count = static_cast<std::uint32_t>(last_cell(tet, axis) - first + 1);
+      cell[axis] = first + static_cast<std::int64_t>(rest % count);
+      rest /= count;
       box *= count;
     }
     const CellVerdict found =

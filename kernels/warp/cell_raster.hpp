@@ -13,6 +13,7 @@
 #include "kernels/warp/cell_planes.hpp"
 #include "kernels/warp/face_sign.hpp"
 #include "kernels/warp/hex_map.hpp"
+#include "kernels/warp/packed_source.hpp"
 #include "kernels/warp/tet_setup.hpp"
 #include "kernels/warp/tet_transform.hpp"
 #include "kernels/warp/volume_filter.hpp"
@@ -51,6 +52,7 @@ struct RasterGeometry {
   View<const Node> rest;  ///< in the source's index space; for hexahedra only
   View<const CellPair> pairs;
   View<const CellRange> ranges;
+  std::int64_t usual_pairs = 0;  ///< about the number of pairs in use; 0: not known
   OutputFrame frame;
   OutsideMap outside;
   bool copy_whole_shifts;
@@ -80,6 +82,7 @@ struct RasterJob : RasterGeometry {
   T background;
   Quantity reorientation;  ///< for which the matrices of transforms were computed
   T* volume;               ///< [k][j][i][component]
+  const PackedSample<T>* packed = nullptr;  ///< the source, for a device; null: not packed
 };
 
 /// Whether voxels of tetrahedron t are transformed samples.

@@ -7,6 +7,7 @@
 
 #include "kernels/base/hd.hpp"
 #include "kernels/base/pixel.hpp"
+#include "kernels/warp/packed_source.hpp"
 #include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp {
@@ -41,6 +42,10 @@ TETWARP_HD T* kept(T* pointer) {
   __builtin_assume(__isGlobal(pointer));
 #endif
   return pointer;
+}
+template <class T>
+TETWARP_HD const PackedSample<T>* kept(const PackedSample<T>* pointer) {
+  return reinterpret_cast<const PackedSample<T>*>(kept(reinterpret_cast<const T*>(pointer)));
 }
 
 /// Bits of the float 1.5 x 2^23, whose last place is one: adding it rounds to an integer.
@@ -145,7 +150,17 @@ struct SourceSteps {
     return cube;
   }
 
+  /// The same from a packed source.
+  template <class T>
+  TETWARP_HD SampleCube<T> cube(const PackedSample<T>* at) const {
+    return packed_cube(at, row, slice);
+  }
+
   /// The same, where some axes have one neighbor.
+  template <class T>
+  TETWARP_HD SampleCube<T> cube(const PackedSample<T>* at, const RimTap& rim) const {
+    return packed_cube(at, rim.blends[1] ? row : 0, rim.blends[2] ? slice : 0);
+  }
   template <class T>
   TETWARP_HD SampleCube<T> cube(const T* at, const RimTap& rim) const {
     const int step[3] = {rim.blends[0] ? 1 : 0, rim.blends[1] ? row : 0, rim.blends[2] ? slice : 0};
@@ -155,6 +170,24 @@ struct SourceSteps {
         const T* const line = at + (y * step[1] + z * step[2]);
         cube.at[z][y][0] = line[0];
         cube.at[z][y][1] = line[step[0]];
+      }
+    }
+    return cube;
+  }
+
+ private:
+  /// A weight is zero where an axis has one neighbor, so the other sample does not matter.
+  template <class T>
+  TETWARP_HD static SampleCube<T> packed_cube(const PackedSample<T>* at,
+                                              std::int32_t along_j,
+                                              std::int32_t along_k) {
+    SampleCube<T> cube;
+    for (int z = 0; z < 2; ++z) {
+      for (int y = 0; y < 2; y += packed_rows<T>) {
+        const PackedSample<T> sample = at[y * along_j + z * along_k];
+        for (int r = 0; r < packed_rows<T>; ++r) {
+          for (int x = 0; x < 2; ++x) cube.at[z][y + r][x] = sample.at[r][x];
+        }
       }
     }
     return cube;

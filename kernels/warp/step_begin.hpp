@@ -109,11 +109,11 @@ struct TetLanesOp {
   TETWARP_HD TetClass
   set_up(std::int64_t t, const Lanes& four, TetSetup& setup, std::int64_t& pairs) const {
     const std::int32_t* const nodes = one.setup.tets.data + 4 * t;
+    const Node mine = one.setup.deformed[nodes[four.lane]];
     TetNodes tet;  // the node opposite this lane's face, then those of the face
     for (int a = 0; a < 4; ++a) {
-      const Node& node =
-          one.setup.deformed[nodes[a == 0 ? four.lane : face_node(four.lane, a - 1)]];
-      for (int axis = 0; axis < 3; ++axis) tet.x[a][axis] = node.x[axis];
+      const int of = a == 0 ? four.lane : face_node(four.lane, a - 1);
+      for (int axis = 0; axis < 3; ++axis) tet.x[a][axis] = four.of(of, mine.x[axis]);
     }
     for (int a = 0; a < 4; ++a) {
       if (tet.x[a][0] == bad_node) return TetClass::bad_position;
@@ -135,11 +135,11 @@ struct TetLanesOp {
     if (turned == 0) return TetClass::flat;
     for (int f = 3; f > 0; --f) of_nodes[f] = four.of(f, of_nodes[0]);  // the first does not count
     set_rows(nodes, anchor, four, of_nodes, setup);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (four.lane != axis) continue;
-      setup.anchor[axis] = sides[axis].anchor;
-      setup.begin[axis] = sides[axis].begin;
-      setup.end[axis] = sides[axis].end;
+    const BoxSide side = four.lane == 0 ? sides[0] : four.lane == 1 ? sides[1] : sides[2];
+    if (four.lane < 3) {
+      setup.anchor[four.lane] = side.anchor;
+      setup.begin[four.lane] = side.begin;
+      setup.end[four.lane] = side.end;
     }
     pairs = cells;
     return turned * one.setup.rest_orientation[t] < 0 ? TetClass::inverted : TetClass::regular;

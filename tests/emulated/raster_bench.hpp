@@ -92,8 +92,9 @@ class RasterBench {
   }
 
   /// Cells in groups of four, those left over by blocks of one cell.
-  /// @param capacity  pairs of a block that have room
-  Rastered<T> by_groups(int capacity = 300) {
+  /// @param capacity   pairs of a block that have room
+  /// @param is_packed  whether samples are read from a packed source
+  Rastered<T> by_groups(int capacity = 63, bool is_packed = false) {
     const OutputFrame& frame = input_.frame;
     std::vector<std::uint32_t> general(static_cast<std::size_t>(frame.cell_count()));
     CellListCounts counts = {};
@@ -103,8 +104,16 @@ class RasterBench {
                         static_cast<unsigned>(frame.cells[1]),
                         static_cast<unsigned>(frame.cells[2]));
       counts = {};
-      launch(nullptr, cell_group_kernel<T>, groups, group_threads, group_bytes(capacity), job,
-             capacity, general.data(), &counts.general);
+      const auto launch_groups = [&](auto* kernel) {
+        launch(nullptr, kernel, groups, group_threads, group_bytes(capacity), job, capacity,
+               general.data(), &counts.general);
+      };
+      if (is_packed) {
+        job.packed = packed().data;
+        launch_groups(cell_group_kernel<T, PackedSample<T>>);
+      } else {
+        launch_groups(cell_group_kernel<T, T>);
+      }
       job.listed = general.data();
       job.listed_count = &counts.general;
       launch(nullptr, raster_kernel(job), dim3(3), raster_threads, 0, job);
@@ -122,6 +131,12 @@ class RasterBench {
   }
 
  private:
+  View<PackedSample<T>> packed() {
+    const auto packed = arrays_.template zeros<PackedSample<T>>(source_.grid.voxel_count());
+    pack_source(exec_, PackSourceOp<T>{job_.source, packed});
+    return packed;
+  }
+
   void prefilter() {
     const auto size = source_.grid.voxel_count() * source_.components;
     const auto coefficients = arrays_.template zeros<ArithmeticOf<T>>(size);

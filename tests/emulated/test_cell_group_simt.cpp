@@ -38,11 +38,13 @@ Scene shifted_block(std::int64_t size, const Point3& by) {
 
 /// @returns the number of cells that groups compute
 template <class T>
-std::int64_t expect_equal_bits(RasterBench<T>& bench, const RasterCase& what, int capacity = 300) {
+std::int64_t expect_equal_bits(RasterBench<T>& bench, const RasterCase& what, int capacity = 63) {
   const Rastered<T> rows = bench.by_rows();
   simt::for_each_schedule([&](const simt::Schedule&) {
-    EXPECT_TRUE(is_same(bench.by_groups(capacity), rows))
-        << what.scene << ' ' << name_of(what.type);
+    for (const bool is_packed : {false, true}) {
+      EXPECT_TRUE(is_same(bench.by_groups(capacity, is_packed), rows))
+          << what.scene << ' ' << name_of(what.type) << (is_packed ? " packed" : "");
+    }
   });
   return bench.cell_count() - bench.general_cells;
 }
@@ -76,12 +78,16 @@ TEST(CellGroupSimt, TetrahedraOfEverySizeAndShapeHaveTheSameBits) {
   }
 }
 
+/// Voxels that wait for exact tests may be tested against further tetrahedra.
 TEST(CellGroupSimt, TestsAreCountedAsInBlocksOfOneCell) {
   for (const char* scene : {"overlapping", "aligned", "waved", "slivers_1", "soup"}) {
     RasterBench<float> bench({.scene = scene});
     const RasterCounts blocks = bench.by_blocks().counts, groups = bench.by_groups().counts;
     EXPECT_GT(blocks.inside_tests, 0) << scene;
-    EXPECT_EQ(groups.inside_tests, blocks.inside_tests) << scene;
+    EXPECT_GE(groups.inside_tests, blocks.inside_tests) << scene;
+    EXPECT_LT(static_cast<double>(groups.inside_tests),
+              1.02 * static_cast<double>(blocks.inside_tests))
+        << scene;
   }
 }
 
@@ -89,7 +95,7 @@ TEST(CellGroupSimt, CellsWithoutRoomForTheirPairsHaveTheSameBits) {
   const RasterCase what{.scene = "rotated"};
   RasterBench<float> bench(what);
   const std::int64_t all = expect_equal_bits(bench, what);
-  const std::int64_t some = expect_equal_bits(bench, what, 60);
+  const std::int64_t some = expect_equal_bits(bench, what, 7);
   EXPECT_GT(some, 0);
   EXPECT_LT(some, all);
   EXPECT_LT(expect_equal_bits(bench, what, 0), some);

@@ -27,6 +27,7 @@
 #define __device__
 #define __global__ [[maybe_unused]] static  // the sanitizer guards no statics of inline functions
 #define __forceinline__ inline
+#define __noinline__
 #define __launch_bounds__(...)
 #if defined(__SANITIZE_ADDRESS__)
 #define __shared__ static  // the sanitizer guards no thread-local storage; blocks run one by one
@@ -120,6 +121,11 @@ inline void __threadfence() {
 template <std::integral T>
 T atomicAdd(T* address, std::type_identity_t<T> value) {
   return __atomic_fetch_add(address, value, __ATOMIC_RELAXED);
+}
+
+template <std::integral T>
+T atomicAnd(T* address, std::type_identity_t<T> value) {
+  return __atomic_fetch_and(address, value, __ATOMIC_RELAXED);
 }
 
 template <std::integral T>

@@ -44,12 +44,12 @@ class CellRaster<CudaExec> {
   }
 
  private:
-  /// Pairs of a block that have room: twice the mean, at least enough for meshes that are fine only
-  /// somewhere.
+  /// Maps of a cell that have room: the mean number of pairs, at least enough for meshes that are
+  /// fine only somewhere.
   static int capacity(const RasterGeometry& job) {
-    constexpr std::int64_t least = 96, most = 304;
-    const std::int64_t twice = 2 * group_cells * job.pairs.size / job.frame.cell_count();
-    return static_cast<int>(min_of(max_of(twice, least), most));
+    constexpr std::int64_t least = 23, most = 63;
+    const std::int64_t pairs = job.usual_pairs > 0 ? job.usual_pairs : job.pairs.size;
+    return static_cast<int>(min_of(max_of(pairs / job.frame.cell_count(), least), most));
   }
 
   template <class T>
@@ -70,8 +70,15 @@ class CellRaster<CudaExec> {
     const dim3 groups(static_cast<unsigned>((frame.cells[0] + group_cells - 1) / group_cells),
                       static_cast<unsigned>(frame.cells[1]), static_cast<unsigned>(frame.cells[2]));
     const int room = capacity(job);
-    exec.enqueue(label, cell_group_kernel<T>, groups, group_threads, group_bytes(room), job, room,
-                 general, &counts->general);
+    const auto enqueue = [&](auto* kernel) {
+      exec.enqueue(label, kernel, groups, group_threads, group_bytes(room), job, room, general,
+                   &counts->general);
+    };
+    if (job.packed != nullptr) {
+      enqueue(cell_group_kernel<T, PackedSample<T>>);
+    } else {
+      enqueue(cell_group_kernel<T, T>);
+    }
     job.listed = general;
     job.listed_count = &counts->general;
     cell_raster(exec, job, progress);

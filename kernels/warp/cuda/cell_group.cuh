@@ -12,138 +12,95 @@ namespace tetwarp {
 
 constexpr int group_cells = 4;  ///< of a block, side by side along i, one per warp
 constexpr int group_threads = 32 * group_cells;
-constexpr int pair_parts = 4;     ///< threads of a pair: one face each, three a row of the map
-constexpr int lane_rows = 2;      ///< rows of a cell per lane, four apart along k
+constexpr int pair_parts = 4;  ///< threads of a pair: one face each, three a row of the map
+constexpr int chunk_pairs = 32 / pair_parts;  ///< whose rows a warp walks at a time
 constexpr int group_blocks = 8;   ///< per multiprocessor at least: leaves 64 registers per thread
 constexpr int column_flight = 2;  ///< voxels of a lane whose samples are loaded together
+constexpr int cell_rows = cell_edge * cell_edge;
 constexpr unsigned whole_warp = 0xffffffffu;
 
-/// The owners of a cell's voxels [k][j][i]: an owner's number among the cell's pairs, from 1; 0:
-/// none.
-struct alignas(8) CellOwners {
-  std::uint8_t at[cell_edge][cell_edge][cell_edge];
-};
+/// What a warp knows of its cell, in shared memory. Pairs that may own a voxel are numbered from 1
+/// in the order of the list.
+struct alignas(16) CellState {
+  RowBound bounds[chunk_pairs][pair_parts];  ///< those from below first, those from above last
+  std::uint8_t owners[cell_edge][cell_edge][cell_edge];  ///< numbers; 0: none
+  std::uint32_t rows[cell_rows];  ///< [k][j] voxels without an owner yet, tests << tests_shift
+  PairHead heads[chunk_pairs];
+  std::uint8_t pairs[256];  ///< place of pair `number` in the cell's part of the list
 
-/// What a warp keeps in dynamic shared memory of the pairs of its cell, in the order of the list.
-struct GroupPairs {
-  PairMap* maps;     ///< after one that voxels without an owner use
-  RowBound* bounds;  ///< four per pair, those from below first, those from above last
-  PairHead* heads;
+  /// Owners of a row as two words.
+  TETWARP_HD std::uint32_t* row(int j, int k) {
+    return reinterpret_cast<std::uint32_t*>(owners[k][j]);
+  }
 };
+constexpr int tests_shift = 16;
 
-/// Bytes of the GroupPairs of all warps of a block.
-/// @param capacity  pairs of a block that have room
+/// Voxel i of row r, and the number of the pair that may own it.
+TETWARP_HD std::uint32_t unsure_voxel(int r, int i, int number) {
+  return static_cast<std::uint32_t>(number << 9 | r << cell_shift | i);
+}
+
+/// Dynamic shared memory of a block. Per cell: first the voxels that float32 leaves open, then the
+/// maps of its pairs after one that voxels without an owner use.
+/// @param capacity  maps of a cell that have room
 inline std::size_t group_bytes(int capacity) {
-  const auto count = static_cast<std::size_t>(capacity);
-  return (count + group_cells) * sizeof(PairMap) +
-         count * (pair_parts * sizeof(RowBound) + sizeof(PairHead));
+  return static_cast<std::size_t>(group_cells) * static_cast<std::size_t>(capacity + 1) *
+         sizeof(PairMap);
 }
 
-/// Those of a warp.
-/// @param first  pairs of the warps before
-__device__ __forceinline__ GroupPairs group_pairs(int capacity, int warp, int first) {
-  auto* const maps = dynamic_shared<PairMap>();
-  auto* const bounds = reinterpret_cast<RowBound*>(maps + capacity + group_cells);
-  auto* const heads = reinterpret_cast<PairHead*>(bounds + pair_parts * capacity);
-  return {maps + first + warp, bounds + pair_parts * first, heads + first};
+/// The samples of a job, as they are (Sample = T) or packed.
+template <class Sample, class T>
+__device__ __forceinline__ const Sample* samples_of(const RasterJob<T>& job) {
+  if constexpr (std::is_same_v<Sample, T>) {
+    return job.source.data;
+  } else {
+    return job.packed;
+  }
 }
 
-/// A cell of the block.
-struct GroupCell {
-  CellClass state;
-  std::uint32_t begin;  ///< its first pair in the list
-  int pairs;
+/// Unsure voxels of a cell that have room.
+TETWARP_HD int words_of(int capacity) {
+  return (capacity + 1) * static_cast<int>(sizeof(PairMap) / sizeof(std::uint32_t));
+}
+
+/// What exact tests of the voxels of a cell need.
+struct ExactTests {
+  const CellPair* pairs;
+  View<const Node> nodes;
+  const std::int32_t* tets;
+  int corner[3];
+
+  /// @param number  of the pair
+  TETWARP_HD bool is_inside(const CellState& state, int number, int i, int j, int k) const {
+    const auto tet = std::int64_t{4} * tet_of(pairs[state.pairs[number]]);
+    return is_inside_exact(tet_nodes(nodes, tets + tet), corner[0] + i, corner[1] + j,
+                           corner[2] + k);
+  }
 };
 
-/// The cell of each of the first four lanes; those beyond the output are kept.
+/// A cell as its warp sees it.
 template <class T>
-__device__ __forceinline__ GroupCell group_cell(const RasterJob<T>& job) {
-  const int lane = static_cast<int>(threadIdx.x) % 32;
-  const int ci = static_cast<int>(blockIdx.x) * group_cells + lane;
-  if (lane >= group_cells || ci >= job.frame.cells[0]) return {CellClass::keep, 0, 0};
-  const std::int64_t number =
-      job.frame.cell_index(ci, static_cast<int>(blockIdx.y), static_cast<int>(blockIdx.z));
-  const CellRange range = job.ranges[number];
-  return {likely_class(job, number, range), range.begin, static_cast<int>(range.end - range.begin)};
-}
+struct GroupCell {
+  const RasterJob<T>& job;
+  int corner[3];           ///< its first voxel [frame]
+  const CellPair* pairs;   ///< its part of the list
+  int count;               ///< pairs in it
+  CellState& state;
 
-/// The room of a cell among that of its block, which plain cells take in turn.
-/// @param cell  of the first four lanes
-/// @returns  the cell's first place; `capacity` if its pairs do not fit. Every warp finds the same.
-__device__ __forceinline__ int place_of(const GroupCell& cell, int capacity, int warp) {
-  const int wanted = cell.state == CellClass::plain ? cell.pairs : 0;
-  int sum = 0, place = capacity;
-  for (int c = 0; c < group_cells; ++c) {
-    const int pairs = __shfl_sync(whole_warp, wanted, c);
-    const bool fits = sum + pairs <= capacity;
-    if (c == warp && fits) place = sum;
-    sum += fits ? pairs : 0;
+  __device__ __forceinline__ ExactTests tests() const {
+    return {pairs, job.nodes, job.tets.data, {corner[0], corner[1], corner[2]}};
   }
-  return place;
-}
+  /// Whether all its pairs are numbered, and their maps set with their bounds.
+  __device__ __forceinline__ bool has_few() const { return count <= chunk_pairs; }
+  /// Whether one tetrahedron holds the whole cell and no other comes before it.
+  __device__ __forceinline__ bool is_single() const { return count == 1 && is_accepted(pairs[0]); }
+  __device__ __forceinline__ const TetSetup& setup(int p) const {
+    return job.setups[tet_of(pairs[p])];
+  }
+};
 
-/// Stores what the voxels of a cell need of its pairs, four lanes per pair. Called by all lanes of
-/// a warp.
-/// @param corner  the cell's first voxel [frame]
-/// @returns  the cell's class: plain, rim or general
-template <class T>
-__device__ __forceinline__ CellClass set_pairs(const RasterJob<T>& job,
-                                               const GroupCell& cell,
-                                               const int* corner,
-                                               const GroupPairs& pairs) {
-  const int lane = static_cast<int>(threadIdx.x) % 32, part = lane & (pair_parts - 1);
-  const int shift = lane & (32 - pair_parts), row = min_of(part, 2);
-  if (lane == 0) {
-    PairMap none = {};
-    none.source = job.source.data;
-    none.tet = -1;
-    pairs.maps[0] = none;
-  }
-  bool is_plain = true, is_rim = false;
-  for (int first = 0; first < cell.pairs; first += 32 / pair_parts) {
-    const int p = first + lane / pair_parts;
-    const bool is_wanted = p < cell.pairs;
-    const CellPair pair = job.pairs[cell.begin + static_cast<unsigned>(min_of(p, cell.pairs - 1))];
-    const TetSetup& tet = job.setups[tet_of(pair)];
-    bool is_cut;
-    const RowBound bound = row_bound(tet, part, corner, is_cut);
-    double start, linear[3];
-    map_start_along(tet, corner, row, start, linear);
-    const double lower = whole_voxel(start), relative = lower - job.source.origin[row];
-    const bool is_good = is_blended(job, tet) && fabs(relative) < most_whole;
-    const int whole = is_good ? static_cast<int>(relative) : 0;
-    is_plain = is_plain && is_good;
-    is_rim = is_rim || !maps_inside(job.source.origin[row], job.source.dims[row], start, linear);
-
-    const auto of_pair = [&](bool vote) {
-      return __ballot_sync(whole_warp, vote) >> shift & ((1u << pair_parts) - 1);
-    };
-    const bool is_below = bound.margin > 0;
-    const unsigned below = of_pair(is_cut && is_below), above = of_pair(is_cut && !is_below);
-    int from[3];
-    for (int r = 0; r < 3; ++r) from[r] = __shfl_sync(whole_warp, whole, r, pair_parts);
-    if (!is_wanted) continue;
-    if (is_cut) {
-      const int rank = __popc((is_below ? below : above) & ((1u << part) - 1));
-      pairs.bounds[pair_parts * p + (is_below ? rank : pair_parts - 1 - rank)] = bound;
-    }
-    PairMap& map = pairs.maps[p + 1];
-    if (part < 3) {
-      map.base[part] = static_cast<float>(start - lower);
-      for (int axis = 0; axis < 3; ++axis) {
-        map.axis[axis][part] = static_cast<float>(linear[axis]);
-      }
-      map.whole[part] = static_cast<float>(whole);
-    } else {
-      map.source = job.source.data + voxel_of(job.source, from[0], from[1], from[2]);
-      map.tet = tet_of(pair);
-      pairs.heads[p] = pair_head(tet, corner) | (is_accepted(pair) ? accepted_cell : 0u) |
-                       static_cast<unsigned>(__popc(below)) << below_bits |
-                       static_cast<unsigned>(__popc(above)) << above_bits;
-    }
-  }
-  if (!__all_sync(whole_warp, is_plain)) return CellClass::general;
-  return __any_sync(whole_warp, is_rim) ? CellClass::rim : CellClass::plain;
+__device__ __forceinline__ int lane_of() {
+  return static_cast<int>(threadIdx.x) % 32;
 }
 
 /// Four bits as the bytes of a word, 0 or 1 each.
@@ -151,35 +108,18 @@ TETWARP_HD std::uint32_t bytes_of(std::uint32_t bits) {
   return (bits & 15u) * 0x00204081u & 0x01010101u;
 }
 
-/// The owners of a row.
-struct RowOwners {
-  RowBits open;                       ///< voxels without an owner yet
-  std::uint32_t numbers[2] = {0, 0};  ///< a byte per voxel, as in CellOwners
-
-  /// Gives voxels to pair p of the cell.
-  TETWARP_HD void give(RowBits voxels, int p) {
-    const auto number = static_cast<std::uint32_t>(p + 1);
-    numbers[0] += bytes_of(voxels) * number;
-    numbers[1] += bytes_of(voxels >> 4) * number;
-    open &= ~voxels;
+/// Gives voxels of a row without an owner to pair `number`. Two lanes may do so at once.
+/// @param owners  of the row, two words
+__device__ __forceinline__ void give(RowBits voxels, int number, std::uint32_t* owners) {
+  for (int w = 0; w < 2; ++w) {
+    atomicAdd(owners + w, bytes_of(voxels >> 4 * w) * static_cast<std::uint32_t>(number));
   }
-};
+}
 
-/// The rows of a lane: row r is that of layer k + 4 r.
-struct LaneRows {
-  int j, k;
-  RowOwners rows[lane_rows];
-  int inside_tests = 0;
-
-  TETWARP_HD RowBits open() const { return rows[0].open | rows[1].open; }
-};
-
-/// Cuts the spans of a lane's rows by the faces of a pair.
-TETWARP_HD void cut_spans(const LaneRows& lane,
-                          PairHead head,
-                          const RowBound* bounds,
-                          RowSpan* spans) {
-  const float j = static_cast<float>(lane.j);
+/// Cuts the spans of rows (j, k) by the faces of a pair.
+template <int count>
+TETWARP_HD void cut_spans(
+    PairHead head, const RowBound* bounds, const int* j, const int* k, RowSpan* spans) {
   const int below = static_cast<int>(head >> below_bits & 3u);
   const int above = static_cast<int>(head >> above_bits & 3u);
 #if defined(__CUDA_ARCH__)
@@ -188,8 +128,8 @@ TETWARP_HD void cut_spans(const LaneRows& lane,
   for (int b = 0; b < 3; ++b) {
     if (b >= below) break;
     const RowBound bound = bounds[b];
-    for (int r = 0; r < lane_rows; ++r) {
-      spans[r].cut_below(bound, j, static_cast<float>(lane.k + 4 * r));
+    for (int n = 0; n < count; ++n) {
+      spans[n].cut_below(bound, static_cast<float>(j[n]), static_cast<float>(k[n]));
     }
   }
 #if defined(__CUDA_ARCH__)
@@ -198,64 +138,318 @@ TETWARP_HD void cut_spans(const LaneRows& lane,
   for (int b = 0; b < 3; ++b) {
     if (b >= above) break;
     const RowBound bound = bounds[pair_parts - 1 - b];
-    for (int r = 0; r < lane_rows; ++r) {
-      spans[r].cut_above(bound, j, static_cast<float>(lane.k + 4 * r));
+    for (int n = 0; n < count; ++n) {
+      spans[n].cut_above(bound, static_cast<float>(j[n]), static_cast<float>(k[n]));
     }
   }
 }
 
-/// Finds the owners of a lane's rows among the pairs of its cell.
-/// @param decide  decide(pair, row, unsure) returns those of the voxels `unsure` that are inside
-template <class Decide>
-TETWARP_HD void find_owners(LaneRows& lane,
-                            const PairHead* heads,
-                            const RowBound* bounds,
-                            int pairs,
-                            const Decide& decide) {
-  for (int p = 0; p < pairs && lane.open() != 0; ++p) {
-    const PairHead head = heads[p];
-    if ((head & accepted_cell) != 0) {
-      for (RowOwners& row : lane.rows) row.give(row.open, p);
-      return;
+/// Decides unsure voxels, in their order: a voxel that is inside belongs to its pair unless one
+/// before it has it. Called by all lanes of a warp.
+__device__ __noinline__ inline void decide(CellState& state,
+                            ExactTests tests,
+                            const std::uint32_t* unsure,
+                            int count) {
+  for (int first = 0; first < count; first += 32) {
+    __syncwarp();
+    const bool is_wanted = first + lane_of() < count;
+    const std::uint32_t voxel = is_wanted ? unsure[first + lane_of()] : 0;
+    const int number = static_cast<int>(voxel >> 9);
+    const int r = static_cast<int>(voxel >> cell_shift) & (cell_rows - 1);
+    const int i = static_cast<int>(voxel) & (cell_edge - 1);
+    const int j = r & (cell_edge - 1), k = r >> cell_shift;
+    bool is_inside = is_wanted && tests.is_inside(state, number, i, j, k);
+    for (;;) {  // the voxels of one pair at a time, all different
+      const unsigned left = __ballot_sync(whole_warp, is_inside);
+      if (left == 0) break;
+      const int next = __shfl_sync(whole_warp, number, __ffs(static_cast<int>(left)) - 1);
+      if (!is_inside || number != next) continue;
+      std::uint8_t& owner = state.owners[k][j][i];
+      if (owner == 0) atomicAnd(&state.rows[r], ~(1u << i));
+      if (owner == 0 || owner > number) owner = static_cast<std::uint8_t>(number);
+      is_inside = false;
     }
-    const PairHead layers = (head >> lane.j & 1u) != 0 ? head >> (layer_bits + lane.k) & 0x11u : 0;
-    if (layers == 0) continue;
-    RowSpan spans[lane_rows];
-    cut_spans(lane, head, bounds + pair_parts * p, spans);
-    for (int r = 0; r < lane_rows; ++r) {
-      RowOwners& row = lane.rows[r];
-      const RowBits tested = (layers >> 4 * r & 1u) != 0 ? row.open : 0;
-      lane.inside_tests += __builtin_popcount(tested);
-      const RowBits sure = spans[r].inside() & tested;
-      row.give(sure | decide(p, r, spans[r].possible() & tested & ~sure), p);
+  }
+  __syncwarp();
+}
+
+/// Where the search for the owners of a cell is; the same in all lanes.
+struct OwnerSearch {
+  std::uint32_t* unsure;  ///< voxels that float32 leaves open, see unsure_voxel()
+  int room;               ///< for these
+  int numbers = 0;        ///< pairs that may own a voxel
+  int waiting = 0;        ///< unsure voxels, also those without room
+  int exact_tests = 0;
+  bool is_plain = true;  ///< else the general kernel has to compute the cell
+};
+
+/// Notes the voxels of row r that float32 leaves open. Called by all lanes of a warp.
+/// @param number  of the pair
+__device__ __forceinline__ void note_unsure(
+    OwnerSearch& search, int r, RowBits voxels, int number) {
+  for (;;) {
+    const unsigned some = __ballot_sync(whole_warp, voxels != 0);
+    if (some == 0) return;
+    const int place = search.waiting + __popc(some & ((1u << lane_of()) - 1));
+    if (voxels != 0 && place < search.room) {
+      search.unsure[place] = unsure_voxel(r, __ffs(static_cast<int>(voxels)) - 1, number);
     }
+    voxels &= voxels - (voxels != 0 ? 1 : 0);
+    search.waiting += __popc(some);
   }
 }
 
-/// The same with exact tests: for rows some of whose voxels float32 leaves open.
+/// The pair that a lane works on: one for all lanes of a warp, or one for each half.
+struct PairOfLane {
+  int p;     ///< place in the cell's part of the list
+  int lane;  ///< among those that work on it
+};
+
+/// Gives voxels without an owner that lie within the tetrahedron of a pair to it, in up to `count`
+/// rows of its box per lane. Called by all lanes of a warp.
+/// @tparam is_half  each half of the warp has a pair of its own
+template <int count, bool is_half, class T>
+__device__ __forceinline__ void give_rows(const GroupCell<T>& cell,
+                                          const PairOfLane& of,
+                                          OwnerSearch& search) {
+  CellState& state = cell.state;
+  const PairHead head = state.heads[of.p % chunk_pairs];
+  const RowBox box = row_box(head);
+  int j[count], k[count];
+  for (int n = 0; n < count; ++n) {
+    const int row = of.lane + 32 * n, layer = row * box.per_width >> 8;
+    j[n] = box.first_j + row - layer * box.width;
+    k[n] = box.first_k + layer;
+  }
+  RowSpan spans[count];
+  cut_spans<count>(head, state.bounds[of.p % chunk_pairs], j, k, spans);
+  RowBits sure[count], unsure[count];
+  RowBits some = 0, some_unsure = 0;
+  bool is_twice = false;
+  for (int n = 0; n < count; ++n) {
+    const bool is_in = of.lane + 32 * n < box.count();
+    std::uint32_t* const row = state.rows + (is_in ? cell_edge * k[n] + j[n] : 0);
+    const RowBits open = is_in ? *row & whole_row : 0;
+    sure[n] = spans[n].inside() & open;
+    unsure[n] = spans[n].possible() & open & ~sure[n];
+    some |= sure[n] | unsure[n];
+    some_unsure |= unsure[n];
+    const std::uint32_t change =
+        (static_cast<std::uint32_t>(__builtin_popcount(open)) << tests_shift) - sure[n];
+    if constexpr (is_half) {
+      __syncwarp();  // the other half reads the row, too
+      if (open != 0) is_twice = (sure[n] & ~atomicAdd(row, change)) != 0;
+    } else {
+      if (open != 0) *row += change;
+    }
+  }
+  const unsigned any = __ballot_sync(whole_warp, some != 0);
+  if (any == 0) return;
+  constexpr unsigned low = is_half ? 0xffffu : whole_warp;
+  const int in_low = (any & low) != 0 ? 1 : 0, in_high = (any & ~low) != 0 ? 1 : 0;
+  const bool is_high = is_half && lane_of() >= 16;
+  int number = search.numbers + 1 + (is_high ? in_low : 0);
+  if (cell.has_few()) {
+    number = of.p + 1;
+  } else {
+    if (of.lane == 0 && (is_high ? in_high : in_low) != 0) {
+      state.pairs[number] = static_cast<std::uint8_t>(of.p);
+    }
+    search.numbers += in_low + in_high;
+  }
+  for (int n = 0; n < count; ++n) {
+    if (sure[n] != 0) give(sure[n], number, state.row(j[n], k[n]));
+  }
+  if (!__any_sync(whole_warp, some_unsure != 0 || is_twice)) return;
+  // Two tetrahedra overlap: which of them comes first is not known here.
+  if (is_half && __any_sync(whole_warp, is_twice)) search.is_plain = false;
+  for (int n = 0; n < count; ++n) {
+    note_unsure(search, cell_edge * k[n] + j[n], unsure[n], number);
+  }
+}
+
+/// Gives what is left of a cell to pair p, which holds it whole. Called by all lanes of a warp.
+template <class T>
+__device__ __forceinline__ void give_rest(const GroupCell<T>& cell, int p, OwnerSearch& search) {
+  const int number = cell.has_few() ? p + 1 : ++search.numbers;
+  if (lane_of() == 0) cell.state.pairs[number] = static_cast<std::uint8_t>(p);
+  for (int r = lane_of(); r < cell_rows; r += 32) {
+    give(cell.state.rows[r] & whole_row, number,
+         cell.state.row(r & (cell_edge - 1), r >> cell_shift));
+    cell.state.rows[r] &= ~whole_row;
+  }
+}
+
+/// The voxels of row r = 8 k + j of a cell that are in the output.
 /// @param corner  the cell's first voxel [frame]
-/// @returns  number of exact tests
-TETWARP_HD_RARE int find_owners_exactly(LaneRows& lane,
-                                        GroupPairs pairs,
-                                        int count,
-                                        const int* corner,
-                                        View<const Node> nodes,
-                                        const std::int32_t* tets) {
-  int tests = 0;
-  find_owners(lane, pairs.heads, pairs.bounds, count, [&](int p, int r, RowBits unsure) {
-    RowBits inside = 0;
-    if (unsure == 0) return inside;
-    const TetNodes tet = tet_nodes(nodes, tets + std::int64_t{4} * pairs.maps[p + 1].tet);
-    for (int i = 0; i < cell_edge; ++i) {
-      if ((unsure >> i & 1u) == 0) continue;
-      ++tests;
-      if (is_inside_exact(tet, corner[0] + i, corner[1] + lane.j, corner[2] + lane.k + 4 * r)) {
-        inside |= 1u << i;
+TETWARP_HD RowBits row_within(const OutputFrame& frame, const int* corner, int r) {
+  const int y = corner[1] + (r & (cell_edge - 1)), z = corner[2] + (r >> cell_shift);
+  const bool is_in =
+      y >= frame.begin[1] && y < frame.end[1] && z >= frame.begin[2] && z < frame.end[2];
+  return is_in ? bits_within(frame.begin[0], frame.end[0], corner[0]) : 0;
+}
+
+/// Where the maps of a cell's pairs may be computed.
+struct MapClass {
+  bool is_plain = true;  ///< else by the general kernel
+  bool is_rim = false;   ///< a position may leave the source
+
+  /// Of the lanes of a warp together.
+  __device__ __forceinline__ CellClass of_warp() const {
+    if (!__all_sync(whole_warp, is_plain)) return CellClass::general;
+    return __any_sync(whole_warp, is_rim) ? CellClass::rim : CellClass::plain;
+  }
+};
+
+/// Stores the map of a pair by four lanes. Called by all lanes of a warp.
+/// @param is_wanted  else nothing is stored
+template <class Sample, class T>
+__device__ __forceinline__ void set_map(
+    const GroupCell<T>& cell, int p, bool is_wanted, PairMap& map, MapClass& found) {
+  const RasterJob<T>& job = cell.job;
+  const int part = lane_of() & (pair_parts - 1), row = min_of(part, 2);
+  const TetSetup& tet = cell.setup(p);
+  double start, linear[3];
+  map_start_along(tet, cell.corner, row, start, linear);
+  const double lower = whole_voxel(start), relative = lower - job.source.origin[row];
+  const bool is_good = is_blended(job, tet) && fabs(relative) < most_whole;
+  const int whole = is_good ? static_cast<int>(relative) : 0;
+  found.is_plain = found.is_plain && is_good;
+  found.is_rim = found.is_rim ||
+                 !maps_inside(job.source.origin[row], job.source.dims[row], start, linear);
+  int from[3];
+  for (int r = 0; r < 3; ++r) from[r] = __shfl_sync(whole_warp, whole, r, pair_parts);
+  if (!is_wanted) return;
+  if (part < 3) {
+    map.base[part] = static_cast<float>(start - lower);
+    for (int axis = 0; axis < 3; ++axis) map.axis[axis][part] = static_cast<float>(linear[axis]);
+    map.whole[part] = static_cast<float>(whole);
+  } else {
+    map.source = samples_of<Sample>(job) + voxel_of(job.source, from[0], from[1], from[2]);
+    map.tet = tet_of(cell.pairs[p]);
+  }
+}
+
+/// Sets bounds and heads of the pairs from `first` on, four lanes per pair. Called by all lanes of
+/// a warp.
+/// @param maps   of cells with few pairs; out, after one that voxels without an owner use
+/// @param found  changed by these maps
+template <class Sample, class T>
+__device__ __forceinline__ void set_bounds(const GroupCell<T>& cell,
+                                           int first,
+                                           PairMap* maps,
+                                           MapClass& found) {
+  const int part = lane_of() & (pair_parts - 1), slot = lane_of() / pair_parts;
+  const int p = first + slot, last = cell.count - 1;
+  const bool is_wanted = p <= last;
+  const TetSetup& tet = cell.setup(min_of(p, last));
+  bool is_cut;
+  const RowBound bound = row_bound(tet, part, cell.corner, is_cut);
+  const auto of_pair = [&](bool vote) {
+    return __ballot_sync(whole_warp, vote) >> (lane_of() - part) & ((1u << pair_parts) - 1);
+  };
+  const bool is_below = bound.margin > 0;
+  const unsigned below = of_pair(is_cut && is_below), above = of_pair(is_cut && !is_below);
+  if (is_cut) {
+    const int rank = __popc((is_below ? below : above) & ((1u << part) - 1));
+    cell.state.bounds[slot][is_below ? rank : pair_parts - 1 - rank] = bound;
+  }
+  if (part == 0 && is_wanted) {
+    cell.state.heads[slot] = pair_head(tet, cell.corner) |
+                             (is_accepted(cell.pairs[p]) ? accepted_cell : 0u) |
+                             static_cast<unsigned>(__popc(below)) << below_bits |
+                             static_cast<unsigned>(__popc(above)) << above_bits;
+    if (cell.has_few()) cell.state.pairs[p + 1] = static_cast<std::uint8_t>(p);
+  }
+  if (cell.has_few()) set_map<Sample>(cell, min_of(p, last), is_wanted, maps[slot + 1], found);
+}
+
+/// Finds the owners of the voxels of a cell. Pairs come one after the other, small ones two at a
+/// time; for each the lanes take the rows of its box. Called by all lanes of a warp.
+template <class Sample, class T>
+__device__ __forceinline__ void find_owners(const GroupCell<T>& cell,
+                                            PairMap* maps,
+                                            OwnerSearch& search,
+                                            MapClass& found) {
+  CellState& state = cell.state;
+  const bool is_single = cell.is_single();
+  for (int r = lane_of(); r < cell_rows; r += 32) {
+    state.rows[r] = is_single ? 0 : row_within(cell.job.frame, cell.corner, r);
+    std::uint32_t* const owners = state.row(r & (cell_edge - 1), r >> cell_shift);
+    owners[0] = owners[1] = is_single ? 0x01010101u : 0;
+  }
+  if (is_single) return set_map<Sample>(cell, 0, lane_of() < pair_parts, maps[1], found);
+  for (int first = 0; first < cell.count; first += chunk_pairs) {
+    __syncwarp();
+    set_bounds<Sample>(cell, first, maps, found);
+    const int past = min_of(first + chunk_pairs, cell.count);
+    const auto rows_of = [&](int p) {
+      if (p >= past) return cell_rows;
+      const PairHead head = state.heads[p - first];
+      return (head & accepted_cell) != 0 ? cell_rows + 1 : row_box(head).count();
+    };
+    for (int p = first; p < past; ++p) {
+      __syncwarp();
+      const int rows = rows_of(p);
+      if (rows > cell_rows) {
+        give_rest(cell, p, search);
+      } else if (rows > 32) {
+        give_rows<2, false>(cell, {p, lane_of()}, search);
+      } else if (rows > 16 || rows_of(p + 1) > 16) {
+        give_rows<1, false>(cell, {p, lane_of()}, search);
+      } else {
+        give_rows<1, true>(cell, {p + lane_of() / 16, lane_of() % 16}, search);
+        ++p;
       }
     }
-    return inside;
-  });
-  return tests;
+    if (search.waiting >= (past < cell.count ? 32 : 1)) {
+      search.exact_tests += search.waiting;
+      search.is_plain = search.is_plain && search.waiting <= search.room;
+      decide(state, cell.tests(), search.unsure, min_of(search.waiting, search.room));
+      search.waiting = 0;
+    }
+  }
+}
+
+/// Stores the maps of the pairs of a cell that may own a voxel, four lanes per pair. Called by all
+/// lanes of a warp.
+template <class Sample, class T>
+__device__ __forceinline__ void set_maps(const GroupCell<T>& cell,
+                                         int count,
+                                         PairMap* maps,
+                                         MapClass& found) {
+  for (int first = 1; first <= count; first += chunk_pairs) {
+    const int number = first + lane_of() / pair_parts;
+    set_map<Sample>(cell, cell.state.pairs[min_of(number, count)], number <= count, maps[number],
+                    found);
+  }
+}
+
+/// Finds owners and maps of a cell. Called by all lanes of a warp.
+/// @param maps         room for `capacity` after one that voxels without an owner use; out
+/// @param exact_tests  out, their number
+template <class Sample, class T>
+__device__ __forceinline__ CellClass prepare(const GroupCell<T>& cell,
+                                             int capacity,
+                                             PairMap* maps,
+                                             int& exact_tests) {
+  if (cell.has_few() && cell.count > capacity) return CellClass::general;
+  const int used = cell.has_few() ? chunk_pairs + 1 : 0;  // maps; the others come afterwards
+  OwnerSearch search = {reinterpret_cast<std::uint32_t*>(maps + used),
+                        max_of(words_of(capacity - used), 0)};
+  MapClass found;
+  find_owners<Sample>(cell, maps, search, found);
+  exact_tests = search.exact_tests;
+  if (!search.is_plain || search.numbers > capacity) return CellClass::general;
+  __syncwarp();
+  set_maps<Sample>(cell, search.numbers, maps, found);
+  if (lane_of() == 0) {
+    PairMap none = {};
+    none.source = samples_of<Sample>(cell.job);
+    none.tet = -1;
+    maps[0] = none;
+  }
+  return found.of_warp();
 }
 
 /// The sum of a number over the lanes of a warp.
@@ -264,57 +458,28 @@ __device__ __forceinline__ int lane_sum(int mine) {
   return mine;
 }
 
-/// Finds the owners of the voxels of a cell, and counts. Called by all lanes of a warp.
+/// Adds a cell to the counts of the job. Called by all lanes of a warp.
 /// @param number  of the cell
-/// @param corner  its first voxel [frame]
 template <class T>
-__device__ __forceinline__ void set_owners(const RasterJob<T>& job,
+__device__ __forceinline__ void count_cell(const GroupCell<T>& cell,
                                            std::int64_t number,
-                                           int count,
-                                           const int* corner,
-                                           const GroupPairs& pairs,
-                                           CellOwners& owners) {
-  const int thread = static_cast<int>(threadIdx.x) % 32;
-  const OutputFrame& frame = job.frame;
-  LaneRows lane{thread & 7, thread >> cell_shift, {}};
-  const int y = corner[1] + lane.j;
-  const RowBits row = y >= frame.begin[1] && y < frame.end[1]
-                          ? bits_within(frame.begin[0], frame.end[0], corner[0])
-                          : 0;
-  const unsigned layers = bits_within(frame.begin[2], frame.end[2], corner[2]) >> lane.k;
-  RowBits all[lane_rows];
-  for (int r = 0; r < lane_rows; ++r) {
-    lane.rows[r].open = all[r] = (layers >> 4 * r & 1u) != 0 ? row : 0;
-  }
-  RowBits unsure = 0;
-  find_owners(lane, pairs.heads, pairs.bounds, count, [&](int, int, RowBits voxels) {
-    unsure |= voxels;
-    return RowBits{0};
-  });
-  int exact_tests = 0;
-  if (unsure != 0) {
-    LaneRows again{lane.j, lane.k, {}};
-    for (int r = 0; r < lane_rows; ++r) again.rows[r].open = all[r];
-    exact_tests = find_owners_exactly(again, pairs, count, corner, job.nodes, job.tets.data);
-    lane = again;
-  }
-  int covered = 0;
-  for (int r = 0; r < lane_rows; ++r) {
-    auto* const out = reinterpret_cast<std::uint32_t*>(owners.at[lane.k + 4 * r][lane.j]);
-    for (int w = 0; w < 2; ++w) out[w] = lane.rows[r].numbers[w];
-    covered += __popc(all[r] & ~lane.rows[r].open);
+                                           int exact_tests) {
+  const RasterJob<T>& job = cell.job;
+  int covered = 0, inside_tests = 0;
+  for (int r = lane_of(); r < cell_rows; r += 32) {
+    const std::uint32_t row = cell.state.rows[r];
+    covered += __popc(row_within(job.frame, cell.corner, r) & ~row);
+    inside_tests += static_cast<int>(row >> tests_shift);
   }
   covered = lane_sum(covered);
-  const int inside_tests = lane_sum(lane.inside_tests);
-  if (thread == 0 && job.cell_covered.size > 0) {
-    job.cell_covered[number] = static_cast<std::uint16_t>(covered);
-  }
+  inside_tests = lane_sum(inside_tests);
+  if (lane_of() != 0) return;
+  if (job.cell_covered.size > 0) job.cell_covered[number] = static_cast<std::uint16_t>(covered);
   if (job.counts == nullptr) return;
   RasterCounts& counts = job.counts[number & (job.count_places - 1)];
-  if (exact_tests != 0) atomic_add(&counts.exact_tests, std::int64_t{exact_tests});
-  if (thread != 0) return;
   if (covered != 0) atomic_add(&counts.covered, std::int64_t{covered});
   if (inside_tests != 0) atomic_add(&counts.inside_tests, std::int64_t{inside_tests});
+  if (exact_tests != 0) atomic_add(&counts.exact_tests, std::int64_t{exact_tests});
 }
 
 /// Successive voxels along k of an output.
@@ -337,12 +502,13 @@ __device__ __forceinline__ GroupColumn column_at(const OutputFrame& frame, int x
 
 /// Computes and stores the voxels of a column. Called by all lanes of a warp.
 /// @tparam is_rim  whether positions may leave the source
+/// @tparam Sample  see samples_of()
 /// @param i, j     in the cell
-template <bool is_rim, class T>
+template <bool is_rim, class Sample, class T>
 __device__ __forceinline__ void store_column(const RasterJob<T>& job,
                                              const GroupColumn& column,
                                              const PairMap* maps,
-                                             const CellOwners& owners,
+                                             const CellState& state,
                                              int i,
                                              int j) {
   const SourceSteps steps(job.source.dims);
@@ -356,16 +522,16 @@ __device__ __forceinline__ void store_column(const RasterJob<T>& job,
     SampleCube<T> cubes[column_flight];
     bool is_defined[column_flight];
     for (int v = 0; v < column_flight; ++v) {
-      const int owner = owners.at[k + v][j][i];
+      const int owner = state.owners[k + v][j][i];
       const PairMap& map = maps[owner];
       float x[3];
       local_position(map, x_i, x_j, static_cast<float>(k + v), x);
-      const T* source = static_cast<const T*>(map.source);
+      const Sample* source = static_cast<const Sample*>(map.source);
       is_defined[v] = owner != 0;
       if constexpr (is_rim) {
         const RimTap tap = rim_tap(map.whole, job.source.dims, x);
         is_defined[v] = is_defined[v] && tap.is_defined;
-        if (!tap.is_defined) source = job.source.data;
+        if (!tap.is_defined) source = samples_of<Sample>(job);
         taps[v] = tap.tap;
         cubes[v] = steps.cube(source + steps.offset_of(tap.tap), tap);
       } else {
@@ -382,18 +548,46 @@ __device__ __forceinline__ void store_column(const RasterJob<T>& job,
   }
 }
 
+/// The same for a cell that one tetrahedron holds, within the source.
+template <class Sample, class T>
+__device__ __forceinline__ void store_single_column(
+    const RasterJob<T>& job, const GroupColumn& column, const PairMap& shared_map, int i, int j) {
+  const SourceSteps steps(job.source.dims);
+  const PairMap map = shared_map;
+  const Sample* const source = kept(static_cast<const Sample*>(map.source));
+  T* const out = kept(job.volume + column.first);
+#if defined(__CUDACC__)
+#pragma unroll 1
+#endif
+  for (int k = 0; k < cell_edge; k += column_flight) {
+    InteriorTap taps[column_flight];
+    SampleCube<T> cubes[column_flight];
+    for (int v = 0; v < column_flight; ++v) {
+      float x[3];
+      local_position(map, static_cast<float>(i), static_cast<float>(j), static_cast<float>(k + v),
+                     x);
+      taps[v] = interior_tap(x);
+      cubes[v] = steps.cube(source + steps.offset_of(taps[v]));
+    }
+    for (int v = 0; v < column_flight; ++v) {
+      const T value = kept(interior_value(cubes[v], taps[v]));
+      if (column.is_stored(k + v)) out[(k + v) * column.slice] = value;
+    }
+  }
+}
+
 /// Stores mask and owners of a column.
 template <class T>
 __device__ __forceinline__ void store_owners(const RasterJob<T>& job,
                                              const GroupColumn& column,
                                              const PairMap* maps,
-                                             const CellOwners& owners,
+                                             const CellState& state,
                                              int i,
                                              int j) {
   for (int k = 0; k < cell_edge; ++k) {
     if (!column.is_stored(k)) continue;
     const std::int64_t at = column.first + k * column.slice;
-    const int owner = owners.at[k][j][i];
+    const int owner = state.owners[k][j][i];
     if (job.mask != nullptr) job.mask[at] = owner != 0;
     if (job.tet != nullptr) job.tet[at] = maps[owner].tet;
   }
@@ -437,57 +631,70 @@ __device__ __forceinline__ void store_blank(const RasterJob<T>& job, CellClass s
 /// Computes all cells of the output but those that it lists.
 ///
 /// Blocks: (groups of four cells along i, cells along j, cells along k). Threads: group_threads.
-/// Shared: owners of four cells, 2 KiB, and group_bytes(capacity).
-/// @param capacity       pairs of a block that have room
+/// Shared: CellState of four cells, 7 KiB, and group_bytes(capacity).
+/// @tparam Sample        see samples_of()
+/// @param capacity       maps of a cell that have room
 /// @param general        out, numbers of the other cells, in any order
 /// @param general_count  their number is added
-template <class T>
+template <class T, class Sample>
 __global__ void __launch_bounds__(group_threads, group_blocks) cell_group_kernel(
     RasterJob<T> job, int capacity, std::uint32_t* general, std::int32_t* general_count) {
-  __shared__ CellOwners all_owners[group_cells];
-  const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
-  GroupCell cell = group_cell(job);
-  const bool is_blank =
-      cell.state == CellClass::keep || (cell.state == CellClass::plain && cell.pairs == 0);
-  if (__all_sync(whole_warp, is_blank)) return store_blank(job, cell.state);
-
-  const int place = place_of(cell, capacity, warp);
-  cell.state = static_cast<CellClass>(__shfl_sync(whole_warp, static_cast<int>(cell.state), warp));
-  cell.begin = __shfl_sync(whole_warp, cell.begin, warp);
-  cell.pairs = __shfl_sync(whole_warp, cell.pairs, warp);
-  if (cell.state == CellClass::keep) return;
-  const int ci = static_cast<int>(blockIdx.x) * group_cells + warp;
+  __shared__ CellState states[group_cells];
+  const int lane = lane_of(), warp = static_cast<int>(threadIdx.x) / 32;
   const int cj = static_cast<int>(blockIdx.y), ck = static_cast<int>(blockIdx.z);
-  const int corner[3] = {ci * cell_edge, cj * cell_edge, ck * cell_edge};
+  const int first = static_cast<int>(blockIdx.x) * group_cells;
+  // The first four lanes of each warp look at the cells of the block.
+  CellClass state = CellClass::keep;
+  CellRange range = {0, 0};
+  if (lane < group_cells && first + lane < job.frame.cells[0]) {
+    const std::int64_t number = job.frame.cell_index(first + lane, cj, ck);
+    range = job.ranges[number];
+    state = likely_class(job, number, range);
+  }
+  const bool is_blank =
+      state == CellClass::keep || (state == CellClass::plain && range.begin == range.end);
+  if (__all_sync(whole_warp, is_blank)) return store_blank(job, state);
+
+  state = static_cast<CellClass>(__shfl_sync(whole_warp, static_cast<int>(state), warp));
+  range = {__shfl_sync(whole_warp, range.begin, warp), __shfl_sync(whole_warp, range.end, warp)};
+  if (state == CellClass::keep) return;
+  const int ci = first + warp;
   const std::int64_t number = job.frame.cell_index(ci, cj, ck);
-  const GroupPairs pairs = group_pairs(capacity, warp, place);
-  CellOwners& owners = all_owners[warp];
-  if (place + cell.pairs > capacity) cell.state = CellClass::general;
-  if (cell.state == CellClass::plain) cell.state = set_pairs(job, cell, corner, pairs);
-  if (cell.state == CellClass::general) {
+  const GroupCell<T> cell = {job,
+                             {ci * cell_edge, cj * cell_edge, ck * cell_edge},
+                             job.pairs.data + range.begin,
+                             static_cast<int>(range.end - range.begin),
+                             states[warp]};
+  PairMap* const maps = dynamic_shared<PairMap>() + warp * (capacity + 1);
+  if (state == CellClass::plain) {
+    int exact_tests = 0;
+    state = prepare<Sample>(cell, capacity, maps, exact_tests);
+    if (state != CellClass::general) count_cell(cell, number, exact_tests);
+  }
+  if (state == CellClass::general) {
     if (lane == 0) general[atomicAdd(general_count, 1)] = static_cast<std::uint32_t>(number);
     return;
   }
-  __syncwarp();
-  set_owners(job, number, cell.pairs, corner, pairs, owners);
   __syncwarp();
   const int i = lane & (cell_edge - 1);
 #if defined(__CUDACC__)
 #pragma unroll 1
 #endif
   for (int j = lane >> cell_shift; j < cell_edge; j += 32 / cell_edge) {
-    const GroupColumn column = column_at(job.frame, corner[0] + i, corner[1] + j);
-    if (cell.pairs == 0) {
+    const GroupColumn column = column_at(job.frame, cell.corner[0] + i, cell.corner[1] + j);
+    if (cell.count == 0) {
       store_background(job, column);
       continue;
     }
-    if (cell.state == CellClass::rim) {
-      store_column<true>(job, column, pairs.maps, owners, i, j);
+    if (state == CellClass::plain && cell.is_single()) {
+      store_single_column<Sample>(job, column, maps[1], i, j);
+    } else if (state == CellClass::rim) {
+      store_column<true, Sample>(job, column, maps, cell.state, i, j);
     } else {
-      store_column<false>(job, column, pairs.maps, owners, i, j);
+      store_column<false, Sample>(job, column, maps, cell.state, i, j);
     }
     if (job.mask == nullptr && job.tet == nullptr) continue;
-    store_owners(job, column, pairs.maps, owners, i, j);
+    store_owners(job, column, maps, cell.state, i, j);
   }
 }
 
