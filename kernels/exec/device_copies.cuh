@@ -14,6 +14,7 @@
 #include "kernels/exec/device_queue.cuh"
 #include "kernels/exec/device_vector.cuh"
 #include "kernels/exec/exec_buffer.cuh"
+#include "kernels/exec/staging_ring.cuh"
 
 namespace tetwarp {
 
@@ -45,12 +46,18 @@ class DeviceCopies : public DeviceQueue {
 
   using DeviceQueue::DeviceQueue;
 
-  /// Copies a host array to the device, into `buffer`, on the stream of kernels.
+  /// Copies a host array to the device, into `buffer`, on the stream of kernels; a large one that
+  /// is not page-locked through the StagingRing.
   /// @param size  number of elements, here and below
   template <class T>
   View<const T> resident(const char* label, const T* host, std::int64_t size, Buffer<T>& buffer) {
     buffer.reserve(size);
-    timed(label, [&] { send(host, buffer.view(size), stream()); });
+    timed(label, [&] {
+      if (!is_staged(host, bytes_of<T>(size))) return send(host, buffer.view(size), stream());
+      StagingRing::of(number()).upload(reinterpret_cast<const std::byte*>(host),
+                                       reinterpret_cast<std::byte*>(buffer.view(size).data),
+                                       bytes_of<T>(size), stream());
+    });
     return buffer.const_view(size);
   }
   /// Copies `host` to pinned memory before it returns, and from there to the device on the upload
@@ -77,19 +84,19 @@ class DeviceCopies : public DeviceQueue {
   }
   /// Copies results of the current step to the host after end_compute(true), concurrently with
   /// kernels of the next step: the same bytes of each of `slices` slices. Returns before the copy
-  /// is done if downloads_async(to).
+  /// is done if downloads_async(to); else large copies take the StagingRing.
   /// @param from, to  first byte to copy
   void download(const char* label, const std::byte* from, std::byte* to, const SliceBytes& part) {
     if (!std::exchange(flight().is_awaited, true)) flight().computed.make_wait(download_stream());
-    DeviceQueue::timed(label, download_stream(),
-                       [&] { copy_slices(from, to, part, download_stream()); });
+    DeviceQueue::timed(label, download_stream(), [&] {
+      if (is_staged(to, part.row * part.rows * part.slices)) {
+        return StagingRing::of(number()).download(from, to, part, download_stream());
+      }
+      copy_slices(from, to, part, part.pitch, download_stream());
+    });
   }
   /// Whether download() to this address returns at once: true for page-locked memory.
-  bool downloads_async(const void* to) const {
-    cudaPointerAttributes attributes;
-    check_cuda(cudaPointerGetAttributes(&attributes, to), "cudaPointerGetAttributes");
-    return attributes.type == cudaMemoryTypeHost;
-  }
+  bool downloads_async(const void* to) const { return type_of(to) == cudaMemoryTypeHost; }
 
   template <class T>
   View<T> view(Vector<T>& values) const {
@@ -235,6 +242,16 @@ class DeviceCopies : public DeviceQueue {
 
  private:
   static constexpr std::int64_t state_bytes = 1024;
+
+  static cudaMemoryType type_of(const void* data) {
+    cudaPointerAttributes attributes;
+    check_cuda(cudaPointerGetAttributes(&attributes, data), "cudaPointerGetAttributes");
+    return attributes.type;
+  }
+  /// Whether a copy from or to this memory of the host takes the StagingRing.
+  static bool is_staged(const void* host, std::size_t size) {
+    return size >= StagingRing::least_bytes && type_of(host) == cudaMemoryTypeUnregistered;
+  }
 
   template <class T>
   static void send(const T* host, View<T> to, cudaStream_t on) {
