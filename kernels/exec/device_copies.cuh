@@ -19,7 +19,8 @@
 namespace tetwarp {
 
 /// The copies of CudaExec. All are enqueued and return before they have run, unless stated; memory
-/// of the host that is not page-locked may change once they have returned.
+/// of the host that is not page-locked may change once they have returned, and large arrays in it
+/// pass through the StagingRing.
 class DeviceCopies : public DeviceQueue {
  public:
   template <class T>
@@ -46,18 +47,12 @@ class DeviceCopies : public DeviceQueue {
 
   using DeviceQueue::DeviceQueue;
 
-  /// Copies a host array to the device, into `buffer`, on the stream of kernels; a large one that
-  /// is not page-locked through the StagingRing.
+  /// Copies a host array to the device, into `buffer`, on the stream of kernels.
   /// @param size  number of elements, here and below
   template <class T>
   View<const T> resident(const char* label, const T* host, std::int64_t size, Buffer<T>& buffer) {
     buffer.reserve(size);
-    timed(label, [&] {
-      if (!is_staged(host, bytes_of<T>(size))) return send(host, buffer.view(size), stream());
-      StagingRing::of(number()).upload(reinterpret_cast<const std::byte*>(host),
-                                       reinterpret_cast<std::byte*>(buffer.view(size).data),
-                                       bytes_of<T>(size), stream());
-    });
+    timed(label, [&] { send(host, buffer.view(size), stream()); });
     return buffer.const_view(size);
   }
   /// Copies `host` to pinned memory before it returns, and from there to the device on the upload
@@ -84,7 +79,7 @@ class DeviceCopies : public DeviceQueue {
   }
   /// Copies results of the current step to the host after end_compute(true), concurrently with
   /// kernels of the next step: the same bytes of each of `slices` slices. Returns before the copy
-  /// is done if downloads_async(to); else large copies take the StagingRing.
+  /// is done if downloads_async(to).
   /// @param from, to  first byte to copy
   void download(const char* label, const std::byte* from, std::byte* to, const SliceBytes& part) {
     if (!std::exchange(flight().is_awaited, true)) flight().computed.make_wait(download_stream());
@@ -254,12 +249,22 @@ class DeviceCopies : public DeviceQueue {
   }
 
   template <class T>
-  static void send(const T* host, View<T> to, cudaStream_t on) {
+  void send(const T* host, View<T> to, cudaStream_t on) const {
+    if (is_staged(host, bytes_of<T>(to.size))) {
+      return StagingRing::of(number()).upload(reinterpret_cast<const std::byte*>(host),
+                                              reinterpret_cast<std::byte*>(to.data),
+                                              bytes_of<T>(to.size), on);
+    }
     check_cuda(cudaMemcpyAsync(to.data, host, bytes_of<T>(to.size), cudaMemcpyHostToDevice, on),
                "cudaMemcpyAsync to device");
   }
   template <class T>
   void receive(View<const T> from, T* to) const {
+    const SliceBytes whole{bytes_of<T>(from.size), 1, 1, 1};
+    if (is_staged(to, whole.row)) {
+      return StagingRing::of(number()).download(reinterpret_cast<const std::byte*>(from.data),
+                                                reinterpret_cast<std::byte*>(to), whole, stream());
+    }
     check_cuda(
         cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost, stream()),
         "cudaMemcpyAsync to host");

@@ -37,11 +37,11 @@ class StagingRing {
   static constexpr std::size_t least_bytes = std::size_t{4} << 20;
 
   /// The ring of this process for a device, made when first needed and kept until the process ends.
-  /// @pre the device is current
   static StagingRing& of(int device) {
     static std::mutex making;
     static auto* const rings = new std::map<int, StagingRing>;  // outlives the device's runtime
     const std::lock_guard lock(making);
+    const DeviceScope scope(device);
     return rings->try_emplace(device, device, Shape{}).first->second;
   }
 

@@ -5,11 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <tetwarp/error.hpp>
+#include <utility>
 #include <vector>
 
-#include "kernels/exec/staging_ring.cuh"
+#include "kernels/exec/exec_cuda.cuh"
+#include "tests/emulated/device_calls.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -131,6 +134,34 @@ TEST_P(EmulatedStaging, AnErrorOfTheDeviceIsThrownOnceAndLeavesTheRingUsable) {
   ring.upload(from.data(), memory(), size, stream);
   ring.download(memory(), to.data(), {size, 1, 1, 1}, stream);
   EXPECT_TRUE(to == from);
+}
+
+TEST(EmulatedExec, LargeArraysTakeTheRingUnlessTheyArePageLocked) {
+  CudaExec exec(0);
+  std::vector<float> values(std::size_t{3} << 19);  // 6 MiB: more than two pieces
+  ASSERT_GE(values.size() * sizeof(float), StagingRing::least_bytes);
+  std::iota(values.begin(), values.end(), 0.0f);
+  const std::vector<float> expected = values;
+  DeviceVector<float> far;
+  const auto copies_of_round_trip = [&] {
+    take_calls();
+    exec.put(values, far);
+    exec.wait();
+    values.assign(values.size(), -1.0f);
+    exec.get(std::as_const(far).view(), values.data());
+    const DeviceCalls calls = take_calls();
+    return std::pair(calls.count(DeviceCall::copy_to_device),
+                     calls.count(DeviceCall::copy_to_host));
+  };
+
+  const auto [up, down] = copies_of_round_trip();
+  EXPECT_GT(up, 2);
+  EXPECT_GT(down, 2);
+  EXPECT_TRUE(values == expected);
+
+  ASSERT_EQ(cudaHostRegister(values.data(), values.size() * sizeof(float), 1), cudaSuccess);
+  EXPECT_EQ(copies_of_round_trip(), std::pair(std::int64_t{1}, std::int64_t{1}));
+  cudaHostUnregister(values.data());
 }
 }  // namespace
 }  // namespace tetwarp::test
