@@ -115,12 +115,11 @@ struct RingCase {
 };
 
 std::string name_of(const RingCase& row) {
-  return std::string("staging/") +
-         (row.direction == CopyDirection::to_host ? "to_host" : "to_device") +
-         (row.is_untouched ? "_untouched" : "") + "/MiB:" + std::to_string(row.mebibytes) +
-         "/slots:" + std::to_string(row.shape.slots) + "x" +
+  const std::string direction = row.direction == CopyDirection::to_host ? "to_host" : "to_device";
+  return "staging/" + direction + (row.is_untouched ? "_untouched_" : "_") +
+         std::to_string(row.mebibytes) + "/" + std::to_string(row.shape.slots) + "x" +
          std::to_string(row.shape.slot_bytes / mebibyte) +
-         "/threads:" + std::to_string(row.shape.threads);
+         "/cuda/threads:" + std::to_string(row.shape.threads);
 }
 
 void run_ring(benchmark::State& state, const RingCase& row) {
