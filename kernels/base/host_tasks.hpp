@@ -13,8 +13,8 @@ void run_host_tasks(int threads,
                     std::int64_t count,
                     const std::function<void(std::int64_t i)>& task);
 
-/// Copies `size` bytes by stores that bypass the caches where the processor has them: for results
-/// that are not read soon. Lines are written without being loaded first.
+/// Copies `size` bytes by stores that bypass the caches where the processor has them: lines are
+/// written without being loaded first, and are not there to be read soon.
 void stream_copy(const std::byte* from, std::byte* to, std::size_t size);
 
 }  // namespace tetwarp

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -96,7 +95,7 @@ class StagingRing {
         [&](std::int64_t p) {
           const SlicePiece& piece = pieces[static_cast<std::size_t>(p)];
           if (!await(slot(p), p - shape_.slots)) return;
-          std::memcpy(memory(p), from + piece.offset, piece.run);
+          stream_copy(from + piece.offset, memory(p), piece.run);
           const std::lock_guard lock(calls_);
           check_cuda(cudaMemcpyAsync(to + piece.offset, memory(p), piece.run,
                                      cudaMemcpyHostToDevice, stream),
