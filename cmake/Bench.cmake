@@ -23,6 +23,7 @@ add_executable(tetwarp_bench
   bench/measure/row.cpp
   bench/measure/timing.cpp
   bench/warp/analytic_rows.cpp
+  bench/warp/copy_rows.cpp
   bench/warp/features_rows.cpp
   bench/warp/fields_rows.cpp
   bench/warp/labels_rows.cpp
@@ -39,11 +40,12 @@ add_executable(tetwarp_bench
   tests/support/scenes.cpp)
 if(TETWARP_HAS_CUDA)
   target_sources(tetwarp_bench PRIVATE
-    bench/measure/device_floors.cu bench/measure/device_memory.cu)
+    bench/measure/copy_ways.cu bench/measure/device_floors.cu bench/measure/device_memory.cu)
   target_link_libraries(tetwarp_bench PRIVATE CUDA::cudart_static)
 else()
   target_sources(tetwarp_bench PRIVATE
-    bench/measure/device_floors_nocuda.cpp bench/measure/device_memory_nocuda.cpp)
+    bench/measure/copy_ways_nocuda.cpp bench/measure/device_floors_nocuda.cpp
+    bench/measure/device_memory_nocuda.cpp)
 endif()
 target_include_directories(tetwarp_bench PRIVATE
   ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)

@@ -7,7 +7,7 @@ else()
 endif()
 add_library(tetwarp)
 tetwarp_sources(tetwarp host/base
-  backend.cpp error.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp
+  backend.cpp error.cpp host_tasks.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp
   repeated_cells.cpp report.cpp volume.cpp)
 tetwarp_sources(tetwarp host/collide
   body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp

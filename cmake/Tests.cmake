@@ -124,6 +124,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/base/test_parallel.cpp
     tests/base/test_repeated_cells.cpp
     tests/base/test_report.cpp
+    tests/base/test_staging.cpp
     tests/make/test_deform_mesh.cpp
     tests/make/test_lattice_mesh.cpp
     tests/make/test_phantom.cpp
@@ -240,7 +241,8 @@ if(NOT BUILD_SHARED_LIBS)
     $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_contact>
     $<TARGET_OBJECTS:tetwarp_emulated_primitives> tests/emulated/test_cell_list_emulated.cpp
     tests/emulated/test_contact_arrays_emulated.cpp tests/emulated/test_contact_emulated.cpp
-    tests/emulated/test_device_errors.cpp tests/emulated/test_step_operations.cpp
+    tests/emulated/test_device_errors.cpp tests/emulated/test_staging_ring_emulated.cpp
+    tests/emulated/test_step_operations.cpp
     tests/emulated/test_warp_emulated.cpp tests/emulated/test_warp_emulated_copies.cpp
     tests/emulated/test_warp_emulated_memory.cpp tests/emulated/test_warp_emulated_overlap.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)

@@ -61,6 +61,17 @@ def kind_tables():
         ("What overlapping steps saves", "overlap", [
             WORKLOAD, WHERE, ms("ms of a step in flight with others"), counter(alone, "apart"),
             percent("cost", "cost_share")]),
+        ("What results in memory of the host cost", "copies", [
+            WORKLOAD, ms("ms into pageable memory"), counter("page-locked", "locked"),
+            counter("of the device", "resident"), counter("GB/s pageable", "rate"),
+            counter("GB/s page-locked", "locked_rate"), percent("share", "rate_share", 0),
+            counter("first step", "first_step"), counter("construction", "construct"),
+            counter("page-locking", "lock")]),
+        ("Copies of pageable memory by a ring", "staging", [
+            ("direction, MiB", lambda row: row.workload), ("slots x MiB", lambda row: row.method),
+            ("threads", lambda row: str(row.threads)), ms("ms"), counter("GB/s", "rate"),
+            counter("by the runtime", "runtime_rate"), counter("page-locked", "locked_rate"),
+            percent("share", "rate_share", 0)]),
         ("What a region costs", "region", [
             WORKLOAD, WHERE, percent("voxels of the region", "voxel_share"),
             percent("covered voxels of the region", "covered_share"), ms("ms"),

@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
   bench::add_series_rows(selection);
   bench::add_overlap_rows(selection);
   bench::add_resident_rows(selection);
+  bench::add_copy_rows(selection);
   bench::add_region_rows(selection);
   bench::add_chunk_rows(selection);
   bench::add_analytic_rows(selection);

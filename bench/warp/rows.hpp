@@ -61,6 +61,26 @@ void add_overlap_rows(const Selection& selection);
 ///   copy_ratio                time / (output read and written at the device's copy bandwidth)
 void add_resident_rows(const Selection& selection);
 
+/// copies/WORKLOAD/linear/float32/cuda: steps into pageable memory of the host, in turn with steps
+/// into page-locked memory and into memory of the device; all outputs must have the same bits.
+///
+///   locked, resident    the steps into page-locked memory; into memory of the device
+///   rate, locked_rate   bytes of the output / (time - resident), (locked - resident) [GB/s]
+///   rate_share          rate / locked_rate
+///   construct           making the first Warper, whose source is in pageable memory
+///   construct_locked    making a later one with the source page-locked
+///   first_step          into memory that nothing has touched
+///   lock                page-locking such memory
+///
+/// staging/to_host_MIB/12x2/cuda/threads:T, to_device_MIB: one copy of pageable memory through a
+/// StagingRing of 12 slots of 2 MiB, in turn with copies by the runtime and of page-locked memory.
+/// to_host_untouched_MIB: into memory that nothing has touched.
+///
+///   rate, runtime_rate, locked_rate [GB/s]
+///   rate_share          rate / locked_rate
+///   lock                page-locking and unlocking the memory
+void add_copy_rows(const Selection& selection);
+
 /// region/WORKLOAD: steps that compute the middle half of each axis, an eighth of the voxels. In
 /// turn with steps of the whole grid, which must have the same bits there.
 ///

@@ -14,11 +14,13 @@
 #include "kernels/exec/device_queue.cuh"
 #include "kernels/exec/device_vector.cuh"
 #include "kernels/exec/exec_buffer.cuh"
+#include "kernels/exec/staging_ring.cuh"
 
 namespace tetwarp {
 
 /// The copies of CudaExec. All are enqueued and return before they have run, unless stated; memory
-/// of the host that is not page-locked may change once they have returned.
+/// of the host that is not page-locked may change once they have returned, and large arrays in it
+/// pass through the StagingRing.
 class DeviceCopies : public DeviceQueue {
  public:
   template <class T>
@@ -81,15 +83,15 @@ class DeviceCopies : public DeviceQueue {
   /// @param from, to  first byte to copy
   void download(const char* label, const std::byte* from, std::byte* to, const SliceBytes& part) {
     if (!std::exchange(flight().is_awaited, true)) flight().computed.make_wait(download_stream());
-    DeviceQueue::timed(label, download_stream(),
-                       [&] { copy_slices(from, to, part, download_stream()); });
+    DeviceQueue::timed(label, download_stream(), [&] {
+      if (is_staged(to, part.row * part.rows * part.slices)) {
+        return StagingRing::of(number()).download(from, to, part, download_stream());
+      }
+      copy_slices(from, to, part, part.pitch, download_stream());
+    });
   }
   /// Whether download() to this address returns at once: true for page-locked memory.
-  bool downloads_async(const void* to) const {
-    cudaPointerAttributes attributes;
-    check_cuda(cudaPointerGetAttributes(&attributes, to), "cudaPointerGetAttributes");
-    return attributes.type == cudaMemoryTypeHost;
-  }
+  bool downloads_async(const void* to) const { return type_of(to) == cudaMemoryTypeHost; }
 
   template <class T>
   View<T> view(Vector<T>& values) const {
@@ -236,13 +238,33 @@ class DeviceCopies : public DeviceQueue {
  private:
   static constexpr std::int64_t state_bytes = 1024;
 
+  static cudaMemoryType type_of(const void* data) {
+    cudaPointerAttributes attributes;
+    check_cuda(cudaPointerGetAttributes(&attributes, data), "cudaPointerGetAttributes");
+    return attributes.type;
+  }
+  /// Whether a copy from or to this memory of the host takes the StagingRing.
+  static bool is_staged(const void* host, std::size_t size) {
+    return size >= StagingRing::least_bytes && type_of(host) == cudaMemoryTypeUnregistered;
+  }
+
   template <class T>
-  static void send(const T* host, View<T> to, cudaStream_t on) {
+  void send(const T* host, View<T> to, cudaStream_t on) const {
+    if (is_staged(host, bytes_of<T>(to.size))) {
+      return StagingRing::of(number()).upload(reinterpret_cast<const std::byte*>(host),
+                                              reinterpret_cast<std::byte*>(to.data),
+                                              bytes_of<T>(to.size), on);
+    }
     check_cuda(cudaMemcpyAsync(to.data, host, bytes_of<T>(to.size), cudaMemcpyHostToDevice, on),
                "cudaMemcpyAsync to device");
   }
   template <class T>
   void receive(View<const T> from, T* to) const {
+    const SliceBytes whole{bytes_of<T>(from.size), 1, 1, 1};
+    if (is_staged(to, whole.row)) {
+      return StagingRing::of(number()).download(reinterpret_cast<const std::byte*>(from.data),
+                                                reinterpret_cast<std::byte*>(to), whole, stream());
+    }
     check_cuda(
         cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost, stream()),
         "cudaMemcpyAsync to host");

@@ -71,6 +71,16 @@ class DeviceEvent {
     check_cuda(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
   }
   void wait() const { check_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
+  /// Whether wait() would return at once.
+  bool is_done() const {
+    const cudaError_t status = cudaEventQuery(event_);
+    if (status == cudaErrorNotReady) {
+      cudaGetLastError();  // not ready is no error
+      return false;
+    }
+    check_cuda(status, "cudaEventQuery");
+    return true;
+  }
 
   /// Time between two events [s]. @pre both have completed
   double seconds_since(const DeviceEvent& begin) const {
@@ -84,11 +94,13 @@ class DeviceEvent {
 };
 
 /// Copies parts of slices from the device to the host in one operation.
+/// @param to_pitch  rows from one slice to the next at `to`
 inline void copy_slices(const std::byte* from,
                         std::byte* to,
                         const SliceBytes& part,
+                        std::size_t to_pitch,
                         cudaStream_t stream) {
-  if (part.slices == 1 || part.rows == part.pitch) {
+  if (part.slices == 1 || (part.rows == part.pitch && part.pitch == to_pitch)) {
     check_cuda(cudaMemcpyAsync(to, from, part.row * part.rows * part.slices, cudaMemcpyDeviceToHost,
                                stream),
                "cudaMemcpyAsync to host");
@@ -96,7 +108,7 @@ inline void copy_slices(const std::byte* from,
   }
   cudaMemcpy3DParms copy = {};
   copy.srcPtr = make_cudaPitchedPtr(const_cast<std::byte*>(from), part.row, part.row, part.pitch);
-  copy.dstPtr = make_cudaPitchedPtr(to, part.row, part.row, part.pitch);
+  copy.dstPtr = make_cudaPitchedPtr(to, part.row, part.row, to_pitch);
   copy.extent = make_cudaExtent(part.row, part.rows, part.slices);
   copy.kind = cudaMemcpyDeviceToHost;
   check_cuda(cudaMemcpy3DAsync(&copy, stream), "cudaMemcpy3DAsync to host");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/exec/staging_ring.cuh"
 #include "tests/support/skip_series.hpp"
 #include "tests/support/steps_in_flight.hpp"
 
@@ -107,6 +108,51 @@ TEST_F(EmulatedOverlap, KernelsAreLaunchedBeforeTheLastStepIsDownloaded) {
     EXPECT_TRUE(buffers[(s + 1) % 2].bits() == before) << "the step before is downloaded already";
     warper.finish_step();
     EXPECT_FALSE(buffers[(s + 1) % 2].bits() == before);
+  }
+}
+
+/// Results and sources large enough for the ring of page-locked memory.
+class EmulatedStagedSteps : public EmulatedOverlap {
+ protected:
+  const scenes::Scene large = scenes::adversarial_scene("waved", 40);
+  const std::vector<Volume> tensors = {
+      scenes::wavy_volume(large.source_grid, PixelType::float64, 9)};
+
+  void SetUp() override { ASSERT_GE(tensors[0].data.size(), StagingRing::least_bytes); }
+};
+
+TEST_F(EmulatedStagedSteps, HaveTheBitsOfTheCpuWhicheverStreamRunsAhead) {
+  const Steps steps = {large.deformed, scenes::waved(large.deformed, 0.5, 1),
+                       scenes::waved(large.deformed, 0.5, 2)};
+  const std::vector<Bits> expected =
+      steps_one_by_one(tensors, large, {.backend = Backend::cpu}, steps);
+
+  for (const int ahead : {device.none, +compute_stream, +upload_stream, +download_stream}) {
+    device.eager_stream = ahead;
+    EXPECT_TRUE(steps_in_flight(tensors, large, options, steps, Pages::pageable, true) == expected)
+        << "stream " << ahead;
+  }
+}
+
+/// While the host empties the ring of one step, the device has the kernels of the next.
+TEST_F(EmulatedStagedSteps, AreDownloadedAfterTheLaunchesOfTheNextStep) {
+  const StepBuffers buffers[] = {{tensors, large.output_grid, Pages::pageable},
+                                 {tensors, large.output_grid, Pages::pageable}};
+  Warper warper = make_warper(tensors, large, options);
+  for (std::size_t s = 0; s < 5; ++s) {
+    take_calls();
+
+    warper.begin_step(scenes::waved(large.deformed, 0.5, s), buffers[s % 2].target(false));
+
+    const DeviceCalls calls = take_calls();
+    if (s == 0) continue;
+    EXPECT_GT(calls.first(DeviceCall::copy_to_host), calls.last(DeviceCall::launch)) << calls;
+    EXPECT_GT(calls.count(DeviceCall::copy_to_host), 5 + 2) << calls;  // several of the volume
+    if (s > 2) {
+      EXPECT_EQ(calls.count(DeviceCall::allocate), 0) << calls;
+    }
+    warper.finish_step();
+    EXPECT_EQ(take_calls().count(DeviceCall::copy_to_host), 0);
   }
 }
 

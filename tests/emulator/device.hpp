@@ -194,7 +194,10 @@ class Device {
 
   void end_stream(Stream* stream) {
     stream->run_until(stream->queued);
-    std::erase_if(streams_, [&](const auto& one) { return one.get() == stream; });
+    const auto own = std::find_if(streams_.begin(), streams_.end(),
+                                  [&](const auto& one) { return one.get() == stream; });
+    ended_streams_.push_back(std::move(*own));
+    streams_.erase(own);
   }
   void run_all() {
     default_stream_.run_until(default_stream_.queued);
@@ -224,6 +227,7 @@ class Device {
 
   std::map<const std::byte*, Memory> memory_;
   std::vector<std::unique_ptr<Stream>> streams_;
+  std::vector<std::unique_ptr<Stream>> ended_streams_;  ///< events may still refer to them
   Stream default_stream_;
   std::set<const void*> loaded_;
   std::string calls_;

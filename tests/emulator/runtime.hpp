@@ -206,6 +206,15 @@ inline cudaError_t cudaEventSynchronize(cudaEvent_t event) {
     return cudaSuccess;
   });
 }
+/// The device goes on while the host asks: what is not done at one call is at the next.
+inline cudaError_t cudaEventQuery(cudaEvent_t event) {
+  return tetwarp::simt::call(false, [&](auto& device) {
+    if (event->is_passed()) return cudaSuccess;
+    event->pass();
+    device.run_eager();
+    return cudaErrorNotReady;
+  });
+}
 inline cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, unsigned) {
   return tetwarp::simt::call(true, [&](auto& device) {
     if (device.skipped_wait == device.none || device.skipped_wait-- != 0) {

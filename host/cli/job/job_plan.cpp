@@ -217,8 +217,6 @@ VolumePlan plan_volume(const std::string& path,
   }
   plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && plan.steps.size() > 1 &&
                        leaves_time(backend, arguments);
-  // On the cpu begin_step() computes the step: the previous one is finished and written first.
-  plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   set_outputs(plan, output, arguments);
   const auto is_field = [](const ArrayHeader& array) { return nifti_array(array).is_itk_field; };
   if (has_nifti_name(output.string()) && itk_components(plan.written_grid) == 2 &&

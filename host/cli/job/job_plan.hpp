@@ -42,7 +42,6 @@ struct VolumePlan {
   double memory = 0;                 ///< of the process that computes the whole [byte]
   std::string refusal;               ///< with --dry-run: why it cannot run here
   bool writes_beside = false;        ///< write a step while the next one is computed
-  bool overlaps = false;             ///< begin a step before the previous one is copied to the host
   Warnings warnings;
   Warnings notes;  ///< what is left out by design: no error with --strict
 

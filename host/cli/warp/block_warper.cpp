@@ -3,7 +3,7 @@
 #include "host/cli/warp/block_warper.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <vector>
 
 namespace tetwarp::cli {
 namespace {
@@ -15,10 +15,10 @@ bool changes_nothing(const Counts& counts, const ExtraChoice& extra) {
 }
 }  // namespace
 
-void BlockWarper::begin(VolumePart part,
-                        const WarpBlock& block,
-                        const Samples& windows,
-                        const Progress& progress) {
+VolumePart BlockWarper::compute(VolumePart part,
+                                const WarpBlock& block,
+                                const Samples& windows,
+                                const Progress& progress) {
   if (!task_.is_whole || !warper_) make_warper(block, windows);
   part.outputs = outputs_for(part.region);
   std::vector<void*> volumes;
@@ -35,15 +35,8 @@ void BlockWarper::begin(VolumePart part,
   const std::vector<Point3>& positions = part.step->positions;
   const std::vector<Point3> of_block =
       part_mesh_ ? part_mesh_->of(positions) : std::vector<Point3>();
-  begun_.push_back({part, &block, target.owner});
-  warper_->begin_step(part_mesh_ ? of_block : positions, target, progress);
-}
-
-VolumePart BlockWarper::finish() {
-  const StepReport computed = warper_->finish_step();
-  const Begun begun = std::move(begun_.front());
-  begun_.pop_front();
-  VolumeStep& step = *begun.part.step;
+  const StepReport computed = warper_->step(part_mesh_ ? of_block : positions, target, progress);
+  VolumeStep& step = *part.step;
   step.report.timings += computed.timings;
   step.report.counts += computed.counts;
   step.report.totals = computed.totals;
@@ -51,22 +44,22 @@ VolumePart BlockWarper::finish() {
     step.is_repeat =
         task_.volume.is_series && changes_nothing(step.report.counts, task_.arguments.extra);
   } else {
-    end_block(begun);
+    end_block(block, target.owner, step.report.counts);
   }
-  return begun.part;
+  return part;
 }
 
 /// Frees what was made for a block. Numbers of cells in the outputs become those of the whole mesh.
-void BlockWarper::end_block(const Begun& begun) {
+/// @param owners  array of the outputs; null: not written
+void BlockWarper::end_block(const WarpBlock& block, std::int32_t* owners, Counts& counts) {
   warper_.reset();
   part_mesh_.reset();
   for (const ArrayHeader& array : task_.volume.arrays) {
-    begun.part.step->report.counts.bytes_read +=
-        static_cast<std::int64_t>(bytes_of(array, begun.block->source));
+    counts.bytes_read += static_cast<std::int64_t>(bytes_of(array, block.source));
   }
-  if (begun.owners == nullptr) return;
-  std::for_each_n(begun.owners, begun.block->output.voxel_count(), [&](std::int32_t& t) {
-    if (t >= 0) t = begun.block->cells[static_cast<std::size_t>(t)];
+  if (owners == nullptr) return;
+  std::for_each_n(owners, block.output.voxel_count(), [&](std::int32_t& t) {
+    if (t >= 0) t = block.cells[static_cast<std::size_t>(t)];
   });
 }
 
@@ -93,11 +86,7 @@ std::shared_ptr<Samples> BlockWarper::outputs_for(const Region& region) {
   if (!task_.is_whole) return std::make_shared<Samples>(make_samples(task_.outputs, region));
   if (task_.writes_beside) now_ = 1 - now_;
   std::shared_ptr<Samples>& kept = kept_[now_];
-  if (kept != nullptr) return kept;
-  kept = std::make_shared<Samples>(make_samples(task_.outputs, region));
-  for (std::size_t a = 0; a < task_.outputs.size() && task_.job.backend == Backend::cuda; ++a) {
-    locks_.emplace_back((*kept)[a].get(), bytes_of(task_.outputs[a], region));
-  }
+  if (kept == nullptr) kept = std::make_shared<Samples>(make_samples(task_.outputs, region));
   return kept;
 }
 

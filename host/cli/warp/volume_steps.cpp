@@ -47,8 +47,6 @@ void VolumeSteps::run(const std::shared_ptr<VolumeStep>& step) {
 
 void VolumeSteps::finish_all() {
   queue_.start_writing();
-  finish_computing(0);
-  queue_.start_writing();
   queue_.finish_writing();
 }
 
@@ -63,7 +61,6 @@ bool VolumeSteps::equals_last(const VolumeStep& step) const {
 }
 
 void VolumeSteps::repeat_last(const std::shared_ptr<VolumeStep>& step) {
-  finish_computing(0);
   if (!ranks_.is_root()) return;
   repeat_report(last_->report, step->report);
   step->is_repeat = task_.volume.is_series;
@@ -114,25 +111,16 @@ std::future<SourceWindows> VolumeSteps::begin_reading(const VolumeStep& step, st
       [this, window = step.plan.blocks[block].source] { return sources_.read(window); });
 }
 
-/// Begins a block, finishes the previous one and, unless steps overlap, this one.
+/// Computes a block and, of several, begins to write it or sends it to the root.
 void VolumeSteps::compute(VolumePart part, const WarpBlock& block, const Samples& windows) {
   const Progress progress = progress_of(part);
   const bool is_last = part.is_last;
-  warper_.begin(std::move(part), block, windows, progress);
-  finish_computing(task_.overlaps ? 1 : 0);
+  queue_.add(warper_.compute(std::move(part), block, windows, progress));
   if (task_.is_whole) return;
   if (!ranks_.is_root()) {
     exchange_.send(queue_.take_computed());
   } else if (!is_last) {
     queue_.start_writing();
-  }
-}
-
-/// Finishes blocks until at most `left` are in flight.
-void VolumeSteps::finish_computing(std::size_t left) {
-  while (warper_.begun_count() > left) {
-    queue_.add(warper_.finish());
-    if (task_.overlaps) queue_.start_writing();
   }
 }
 
@@ -150,12 +138,10 @@ Progress VolumeSteps::progress_of(const VolumePart& part) const {
   const auto before = static_cast<double>(part.step->report.counts.voxels);
   double steps_done = 0;
   double voxels_done = static_cast<double>(result_.report.counts.voxels) + before;
-  // Earlier steps that are not finished yet: in flight on a device, computed, being written.
+  // Earlier steps that are not finished yet: computed, being written.
   const VolumeStep* later = part.step.get();
-  const VolumeStep* const begun =
-      warper_.begun_count() > 0 ? warper_.first_begun().step.get() : nullptr;
   const VolumeStep* const computed = queue_.computed() ? queue_.computed()->step.get() : nullptr;
-  for (const VolumeStep* step : {begun, computed, queue_.writing()}) {
+  for (const VolumeStep* step : {computed, queue_.writing()}) {
     if (step == nullptr || step == later || step == part.step.get()) continue;
     steps_done += 1;
     voxels_done += static_cast<double>(step->report.counts.voxels);

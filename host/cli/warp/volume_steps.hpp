@@ -20,8 +20,8 @@ namespace tetwarp::cli {
 /// only while the second one is idle. Blocks are assigned to ranks round-robin, and the root writes
 /// them.
 ///
-/// A whole volume: a step is written while the next one is computed; on a device the next one is
-/// begun before the copy of this one to the host.
+/// A whole volume: a step is written while the next one is computed and, on a device, copied to the
+/// host.
 ///
 /// Several blocks: while a block is computed, the previous one is written and the windows of the
 /// next one are read; steps do not overlap.
@@ -36,14 +36,14 @@ class VolumeSteps {
               ProgressBar& bar,
               JobResult& result);
 
-  /// Computes a step. Of a whole volume it may still be in flight after the call.
+  /// Computes a step.
   void run(const std::shared_ptr<VolumeStep>& step);
 
   /// Begins to write what is computed.
   void start_writing() { queue_.start_writing(); }
   /// Waits for the thread for files.
   void finish_writing() { queue_.finish_writing(); }
-  /// Computes and writes all that is begun.
+  /// Writes all that is computed.
   void finish_all();
   /// The sources change: nothing of earlier steps is reused.
   void reset();
@@ -55,7 +55,6 @@ class VolumeSteps {
   void run_blocks(const std::shared_ptr<VolumeStep>& step);
   std::future<SourceWindows> begin_reading(const VolumeStep& step, std::size_t block);
   void compute(VolumePart part, const WarpBlock& block, const Samples& windows);
-  void finish_computing(std::size_t left);
   void end_step_of_blocks(VolumeStep& step);
   Progress progress_of(const VolumePart& part) const;
 
@@ -66,7 +65,7 @@ class VolumeSteps {
   ProgressBar& bar_;
   JobResult& result_;
   PartExchange exchange_;
-  std::shared_ptr<VolumeStep> last_;  ///< the last step that was begun, if it may be repeated
+  std::shared_ptr<VolumeStep> last_;  ///< the last step, if it may be repeated
   BlockWarper warper_;
   PartQueue queue_;  ///< last member: its thread uses the others
 };

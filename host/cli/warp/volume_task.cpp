@@ -16,7 +16,6 @@ VolumeTask::VolumeTask(const WarpArguments& arguments,
       volume(volume),
       is_whole(volume.memory_limit == 0 && rank_count == 1),
       writes_beside(!is_whole || volume.writes_beside),
-      overlaps(is_whole && volume.overlaps),
       region(arguments.warp.region.value_or(Region{{0, 0, 0}, volume.output_grid.dims})),
       options(warp_options(arguments, job, volume)),
       outputs(arrays_written(volume, arguments)) {

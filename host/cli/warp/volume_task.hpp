@@ -25,7 +25,6 @@ struct VolumeTask {
   const VolumePlan& volume;
   bool is_whole;       ///< a single block; sources, Warper and outputs are reused by all steps
   bool writes_beside;  ///< a block is written while the next one is computed
-  bool overlaps;       ///< a step is begun before the previous one is finished
   Region region;       ///< of the output grid: all that is computed
   WarpOptions options;
   std::vector<ArrayHeader> outputs;  ///< warped arrays, then the extra ones
