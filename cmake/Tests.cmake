@@ -243,7 +243,9 @@ if(NOT BUILD_SHARED_LIBS)
     tests/emulated/test_device_errors.cpp tests/emulated/test_step_operations.cpp
     tests/emulated/test_warp_emulated.cpp tests/emulated/test_warp_emulated_copies.cpp
     tests/emulated/test_warp_emulated_memory.cpp tests/emulated/test_warp_emulated_overlap.cpp
+    tests/emulated/test_paper_emulated.cpp bench/peers/paper_method.cpp bench/peers/peer.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
+  target_link_libraries(tetwarp_emulated_tests PRIVATE tetwarp_openmp)
   tetwarp_discover(tetwarp_emulated_tests parity)
   if(tetwarp_device_tests)
     tetwarp_add_tests(tetwarp_device_tests SOURCES
