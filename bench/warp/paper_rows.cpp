@@ -52,11 +52,8 @@ void run(benchmark::State& state, const PaperCase& row) {
   if (const auto fault = fault_in(row.workload, source, samples, accuracy)) {
     return refuse(state, *fault);
   }
-  Protocol protocol{.repetitions = 51, .attempts = 51, .seconds = 5};
-  if (!on_device) {
-    protocol = protocol_for(row.backend, row.threads);
-    if (first > 1) protocol.repetitions = protocol.attempts = 3;
-  }
+  const Protocol protocol = on_device ? Protocol{.repetitions = 51, .attempts = 51, .seconds = 5}
+                                      : protocol_for(row.backend, row.threads, first);
   count_timing(state, time_in_turn(std::span(&steps.step, 1), protocol).front());
   state.counters["voxels"] = static_cast<double>(scene.output_grid.voxel_count());
   state.counters["tets"] = static_cast<double>(row.workload.tet_count());

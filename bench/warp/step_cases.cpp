@@ -151,8 +151,10 @@ std::string place_of(Backend backend, int threads) {
   return backend == Backend::cpu ? name + "/threads:" + std::to_string(threads) : name;
 }
 
-Protocol protocol_for(Backend backend, int threads) {
-  return {.busy_threads = backend == Backend::cpu ? static_cast<double>(threads) : 0.0};
+Protocol protocol_for(Backend backend, int threads, double seconds) {
+  Protocol protocol{.busy_threads = backend == Backend::cpu ? static_cast<double>(threads) : 0.0};
+  if (seconds > 1) protocol.repetitions = protocol.attempts = 3;
+  return protocol;
 }
 
 std::vector<StepCase> step_cases(const Selection& selection) {
