@@ -22,13 +22,17 @@ add_executable(tetwarp_bench
   bench/measure/program.cpp
   bench/measure/row.cpp
   bench/measure/timing.cpp
+  bench/peers/paper_method.cpp
+  bench/peers/peer.cpp
   bench/warp/analytic_rows.cpp
   bench/warp/copy_rows.cpp
   bench/warp/features_rows.cpp
   bench/warp/fields_rows.cpp
+  bench/warp/figure_cases.cpp
   bench/warp/labels_rows.cpp
   bench/warp/main.cpp
   bench/warp/overlap_rows.cpp
+  bench/warp/paper_rows.cpp
   bench/warp/region_rows.cpp
   bench/warp/resident_rows.cpp
   bench/warp/series_rows.cpp
@@ -40,12 +44,13 @@ add_executable(tetwarp_bench
   tests/support/scenes.cpp)
 if(TETWARP_HAS_CUDA)
   target_sources(tetwarp_bench PRIVATE
-    bench/measure/copy_ways.cu bench/measure/device_floors.cu bench/measure/device_memory.cu)
+    bench/measure/copy_ways.cu bench/measure/device_floors.cu bench/measure/device_memory.cu
+    bench/peers/paper_device.cu)
   target_link_libraries(tetwarp_bench PRIVATE CUDA::cudart_static)
 else()
   target_sources(tetwarp_bench PRIVATE
     bench/measure/copy_ways_nocuda.cpp bench/measure/device_floors_nocuda.cpp
-    bench/measure/device_memory_nocuda.cpp)
+    bench/measure/device_memory_nocuda.cpp bench/peers/paper_device_nocuda.cpp)
 endif()
 target_include_directories(tetwarp_bench PRIVATE
   ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)

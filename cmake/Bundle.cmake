@@ -26,4 +26,5 @@ add_custom_target(bundle
     ${PROJECT_SOURCE_DIR}/cmake/run_on_device.sh ${PROJECT_BINARY_DIR}/bundle
   COMMAND ${CMAKE_COMMAND}
     -DFOLDER=${PROJECT_BINARY_DIR}/bundle -P ${PROJECT_SOURCE_DIR}/cmake/CheckBundle.cmake
+  COMMAND ${PROJECT_BINARY_DIR}/bundle/run_on_device.sh list  # fails when a filter matches nothing
   DEPENDS ${tetwarp_bundled} VERBATIM)

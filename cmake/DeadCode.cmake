@@ -6,7 +6,7 @@ target_link_libraries(tetwarp_emulated_command PRIVATE
 if(TETWARP_HAS_MPI)
   target_link_libraries(tetwarp_emulated_command PRIVATE MPI::MPI_CXX)
 endif()
-foreach(part backend contact detector primitives stepper)
+foreach(part backend contact detector primitives start stepper)
   target_sources(tetwarp_emulated_command PRIVATE $<TARGET_OBJECTS:tetwarp_emulated_${part}>)
 endforeach()
 foreach(example contact_block progress simulate_warp quickstart warp_series nifti)

@@ -98,13 +98,13 @@ tetwarp_sources(tetwarp host/simulate/surfaces
   contact_thickness.cpp flat_edges.cpp kept_places.cpp near_pair.cpp pair_materials.cpp
   round_shape.cpp scene_surfaces.cpp surface_motion.cpp)
 tetwarp_sources(tetwarp host/warp
-  block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp step_queue.cpp transform_checks.cpp
-  warper.cpp)
+  backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp step_queue.cpp
+  transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
   backend_cpu.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp row_label_cpu.cpp row_scalar.cpp
   row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
-  backend_${tetwarp_cuda})
+  backend_${tetwarp_cuda} device_start_${tetwarp_cuda})
 if(TETWARP_HAS_CUDA)
   tetwarp_sources(tetwarp kernels/exec
     primitives_cuda.cu)

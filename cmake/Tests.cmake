@@ -130,6 +130,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/make/test_phantom.cpp
     tests/make/test_render_surfaces.cpp
     tests/make/test_render_volume.cpp
+    tests/warp/test_backend_choice.cpp
     tests/warp/test_convex_part.cpp
     tests/warp/test_source_shares.cpp
     tests/warp/test_voxel_bodies.cpp
@@ -233,19 +234,22 @@ if(NOT BUILD_SHARED_LIBS)
     set_source_files_properties(tests/emulated/emulated_backend.cpp tests/emulated/emulated_contact.cpp
       PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
   endif()
-  foreach(part backend contact detector primitives stepper)  # compiled once for several programs
+  foreach(part backend contact detector primitives start stepper)  # compiled once for several programs
     add_library(tetwarp_emulated_${part} OBJECT tests/emulated/emulated_${part}.cpp)
     tetwarp_test_target(tetwarp_emulated_${part})
   endforeach()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_contact>
-    $<TARGET_OBJECTS:tetwarp_emulated_primitives> tests/emulated/test_cell_list_emulated.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_primitives> $<TARGET_OBJECTS:tetwarp_emulated_start>
+    tests/emulated/test_backend_choice_emulated.cpp tests/emulated/test_cell_list_emulated.cpp
     tests/emulated/test_contact_arrays_emulated.cpp tests/emulated/test_contact_emulated.cpp
     tests/emulated/test_device_errors.cpp tests/emulated/test_staging_ring_emulated.cpp
     tests/emulated/test_step_operations.cpp
     tests/emulated/test_warp_emulated.cpp tests/emulated/test_warp_emulated_copies.cpp
     tests/emulated/test_warp_emulated_memory.cpp tests/emulated/test_warp_emulated_overlap.cpp
+    tests/emulated/test_paper_emulated.cpp bench/peers/paper_method.cpp bench/peers/peer.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
+  target_link_libraries(tetwarp_emulated_tests PRIVATE tetwarp_openmp)
   tetwarp_discover(tetwarp_emulated_tests parity)
   if(tetwarp_device_tests)
     tetwarp_add_tests(tetwarp_device_tests SOURCES

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   if (recorded.empty()) std::printf("No recorded problems: TETWARP_FCLIB_DATA is not set\n");
   const BackendStatus cuda = available_backends().front();
   for (const bench::ContactCase& row :
-       bench::contact_cases(program.extent(), threads, recorded, cuda.usable)) {
+       bench::contact_cases(program.extent(), threads, recorded, cuda.usable || program.lists())) {
     bench::add_contact_row(row);
   }
   program.describe(threads);

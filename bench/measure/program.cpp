@@ -42,6 +42,10 @@ Program::Program(int argc, char** argv) : arguments_(argv, argv + argc) {
   const auto is_filter = [](std::string_view argument) {
     return argument.starts_with("--benchmark_filter");
   };
+  const auto is_list = [](std::string_view argument) {
+    return argument.starts_with("--benchmark_list_tests");
+  };
+  lists_ = std::ranges::any_of(arguments_, is_list);
   if (std::ranges::any_of(arguments_, is_filter)) extent_ = Extent::full;
   if (std::erase_if(arguments_, is_full) > 0) extent_ = Extent::full;
 }

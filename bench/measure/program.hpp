@@ -20,6 +20,10 @@ class Program {
   /// Full with --full or with a filter, else brief.
   Extent extent() const { return extent_; }
 
+  /// Whether names of rows are printed instead of measured: then those of back end cuda are
+  /// registered without a device, too.
+  bool lists() const { return lists_; }
+
   /// The value of --NAME=VALUE, which is removed from the arguments; empty when it is not there.
   std::string_view take(std::string_view name);
 
@@ -34,6 +38,7 @@ class Program {
  private:
   std::vector<char*> arguments_;
   Extent extent_ = Extent::brief;
+  bool lists_ = false;
 };
 
 /// Threads of the processor.

@@ -2,6 +2,7 @@
 /// Other ways to warp a volume, timed beside tetwarp on the same input: float32, linear.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <functional>
 
 #include "bench/measure/floors.hpp"
@@ -52,9 +53,18 @@ void sample_affine_avx512(const AffineJob& job, RowOrder order, int threads);
 /// four face planes, half open, in double; then 16 voxels at a time.
 PeerStep scanline_probe(const PeerInput& input);
 
+/// What a step of the paper's method did.
+struct PaperCounts {
+  std::int64_t cells = 0;   ///< of 8 x 8 x 8 voxels, of all bounding boxes
+  std::int64_t drawn = 0;   ///< those that were not rejected; without cells: bounding boxes
+  std::int64_t tested = 0;  ///< voxels, each against the tetrahedron of its cell or box
+  std::int64_t passed = 0;  ///< of these, those within the tetrahedron
+};
+
 /// Gascon et al. 2013, algorithm 1, in float32: for each tetrahedron all voxels of its bounding
 /// box; with_cells: only those of 8 x 8 x 8 cells that its corner masks do not reject.
-PeerStep paper_method(const PeerInput& input, bool with_cells);
+/// @param counts  out, of the last step; may be null
+PeerStep paper_method(const PeerInput& input, bool with_cells, PaperCounts* counts = nullptr);
 
 /// VTK: vtkStaticCellLocator::FindCell for every voxel, then vtkImageInterpolator. Building the
 /// grid and the locator is part of the step, since the mesh moves.

@@ -10,6 +10,7 @@ import sys
 import compare
 import contact_tables
 import device
+import figures
 import peers
 import rows
 import warp_tables
@@ -58,8 +59,18 @@ def draw_plots(arguments):
     return 0
 
 
+def draw_figures(arguments):
+    files = []
+    for path in arguments.files:
+        context, by_name = rows.read_rows(path)
+        files.append((context, list(by_name.values())))
+    print("\n".join(figures.table(files)))
+    figures.draw(files, arguments.folder)
+    return 0
+
+
 def self_test(_):
-    for module in (rows, peers, compare, device):
+    for module in (rows, peers, compare, device, figures):
         module.self_test()
     print("report: all checks passed")
     return 0
@@ -77,6 +88,11 @@ def main():
     tables.add_argument("--gpu-peers", metavar="LOG", help="output of peers/gpu_samplers.py")
     tables.set_defaults(run=print_tables)
     plots.set_defaults(run=draw_plots)
+    paper = commands.add_parser(
+        "figures", help="the paper's figures of time against size and tetrahedra, of several files")
+    paper.add_argument("--folder", required=True, help="where the PNG files are written")
+    paper.add_argument("files", nargs="+", metavar="FILE")
+    paper.set_defaults(run=draw_figures)
     both = commands.add_parser("compare", help="mark rows as faster or slower; exit code 1 when slower")
     both.add_argument("old", metavar="OLD")
     both.add_argument("new", metavar="NEW")

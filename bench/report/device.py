@@ -8,7 +8,7 @@ import peers
 import rows
 from warp_tables import PIXELS, WORKLOAD, counter, figure, ms, sampler_table, table
 
-FILES = ("resident", "warp", "contact", "simulate")
+FILES = ("resident", "warp", "contact", "simulate", "figures", "figures-beside")
 NCU_COLUMNS = {
     "Duration": "time",
     "DRAM Throughput": "DRAM",
@@ -76,7 +76,10 @@ def sections_of(texts):
         if not found:
             continue
         machine = machine or rows.machine_of(context)
-        if name == "resident":
+        if name.startswith("figures"):
+            columns = [("row", lambda row: row.name), ms("step, ms"),
+                       counter("output voxels", "voxels"), counter("tetrahedra", "tets")]
+        elif name == "resident":
             columns = [WORKLOAD, ms("step, ms"), counter("kernels, ms", "kernel"),
                        counter("floor, ms", "floor"), counter("step / floor", "floor_ratio"),
                        counter("step / copy", "copy_ratio")]

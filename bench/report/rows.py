@@ -3,8 +3,8 @@ import json
 import re
 from dataclasses import dataclass, field
 
-KINDS = ("analytic", "position", "series", "overlap", "resident", "copies", "staging", "region",
-         "chunks", "labels", "feature", "fields", "contact", "contact_skip", "contact_scale",
+KINDS = ("analytic", "position", "series", "overlap", "resident", "copies", "staging", "paper",
+         "region", "chunks", "labels", "feature", "fields", "contact", "contact_skip", "contact_scale",
          "contact_coupling")
 METHODS = ("automatic", "newton", "anderson", "nonlinear_cg", "gauss_seidel", "mass_splitting")
 MILLISECONDS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}

@@ -70,20 +70,11 @@ def draw_work_precision(rows, folder):
                         axis.annotate(f"{row.workload}³", at, fontsize=7, **place)
 
 
-def draw_sizes(rows, folder):
-    chosen = [row for row in rows if row.workload.startswith("W2_rotated_")]
-    chosen = [row for row in chosen if row.workload.count("_") == 2]
-    title = "Time against volume size, 1,080 tetrahedra, turned by 45° twice"
-    with Chart(folder, "time_against_size", title, "output voxels", "ms") as chart:
-        use_logarithms(chart.axes[0])
-        culling_lines(chart.axes[0], chosen, lambda row: row["voxels"])
-
-
 def draw_tets(rows, folder):
     chosen = [row for row in rows if row.workload.startswith("W3_waved_256_")]
     chosen = [row for row in chosen if row.workload.count("_") == 3]
     title = "Time against tetrahedra, 256³ voxels, waves"
-    with Chart(folder, "time_against_tetrahedra", title, "tetrahedra", "ms") as chart:
+    with Chart(folder, "time_against_fineness", title, "tetrahedra", "ms") as chart:
         use_logarithms(chart.axes[0])
         culling_lines(chart.axes[0], chosen, lambda row: row["tets"])
 
@@ -132,6 +123,6 @@ def draw_floors(rows, folder):
 
 def draw(rows, folder):
     for draw_one in (
-        draw_work_precision, draw_sizes, draw_tets, draw_threads, draw_stages, draw_floors
+        draw_work_precision, draw_tets, draw_threads, draw_stages, draw_floors
     ):
         draw_one(rows, folder)

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   using namespace tetwarp;
   bench::Program program(argc, argv);
   const BackendStatus cuda = available_backends().front();
-  bench::add_simulate_rows(program.extent(), cuda.usable);
+  bench::add_simulate_rows(program.extent(), cuda.usable || program.lists());
   bench::add_error_rows(program.extent());
   bench::add_touch_rows(program.extent());
   program.describe(bench::processor_threads());

@@ -46,23 +46,24 @@ int main(int argc, char** argv) {
   const double cuda_seconds = bench::seconds_of([&] { cuda = available_backends().front(); });
   const int threads = bench::processor_threads();
   bench::Program program(argc, argv);
-  if (!cuda.usable) {
+  if (!cuda.usable && !program.lists()) {
     std::fprintf(stderr, "back end cuda is left out, none of its rows is measured: %s\n",
                  cuda.reason.c_str());
   }
-  const bench::Selection selection{program.extent(), threads, cuda.usable};
+  const bench::Selection selection{program.extent(), threads, cuda.usable || program.lists()};
   bench::add_step_rows(selection);
   bench::add_series_rows(selection);
   bench::add_overlap_rows(selection);
   bench::add_resident_rows(selection);
   bench::add_copy_rows(selection);
+  bench::add_paper_rows(selection);
   bench::add_region_rows(selection);
   bench::add_chunk_rows(selection);
   bench::add_analytic_rows(selection);
   bench::add_label_rows(selection);
   bench::add_feature_rows(selection);
   bench::add_field_rows(selection);
-  describe(program, cuda, cuda_seconds, threads);
+  if (!program.lists()) describe(program, cuda, cuda_seconds, threads);
   return program.run({"floor_ratio", "ns_per_covered", "cost_share", "cells_touched", "max_error",
                       "rms_error", "wrong_share", "field_ns_per_covered"});
 }

@@ -8,6 +8,7 @@
 
 #include "bench/measure/device_floors.hpp"
 #include "bench/measure/device_memory.hpp"
+#include "bench/warp/figure_cases.hpp"
 #include "bench/warp/rows.hpp"
 #include "bench/warp/warp_job.hpp"
 
@@ -17,7 +18,10 @@ namespace {
 /// the workload's pose and another one.
 class ResidentJob {
  public:
-  ResidentJob(const scenes::Scene& scene, const VolumeView& source, bool stage_times = false)
+  ResidentJob(const scenes::Scene& scene,
+              const VolumeView& source,
+              const SkipOptions& skip,
+              bool stage_times = false)
       : bytes_(static_cast<std::size_t>(scene.output_grid.voxel_count()) * size_of(source.type)),
         node_count_(static_cast<std::int64_t>(scene.deformed.size())),
         positions_{DeviceMemory(scene.deformed.size() * sizeof(Point3)),
@@ -27,7 +31,8 @@ class ResidentJob {
                 scene.mesh,
                 {.output_grid = scene.output_grid,
                  .backend = Backend::cuda,
-                 .stage_times = stage_times}) {
+                 .stage_times = stage_times,
+                 .expert = {.skip = skip}}) {
     positions_[0].put(scene.deformed.data());
     positions_[1].put(nudged_center(scene.deformed, 1.0).data());
   }
@@ -67,18 +72,18 @@ bool agree(const std::vector<std::byte>& output, const WarpJob& cpu) {
                             [bound](float f, float w) { return std::abs(f - w) <= bound; });
 }
 
-void run(benchmark::State& state, const Workload& workload) {
+void run(benchmark::State& state, const Workload& workload, const SkipOptions& skip) {
   const scenes::Scene& scene = inputs().scene(workload);
   const VolumeView source = inputs().image(workload);
   WarpJob plain(scene, source, {.backend = Backend::cpu});
   plain.step();
   StepReport report;
   {
-    ResidentJob measured(scene, source, true);
+    ResidentJob measured(scene, source, skip, true);
     measured.step(1);
     report = measured.step(0);
   }
-  ResidentJob job(scene, source);
+  ResidentJob job(scene, source, skip);
   job.step(1);
   job.step(0);
   if (!agree(job.output(), plain)) {
@@ -98,6 +103,8 @@ void run(benchmark::State& state, const Workload& workload) {
   state.counters["floor"] = 1e3 * floor.kernel;
   state.counters["floor_ratio"] = timing.median / floor.kernel;
   state.counters["copy_ratio"] = timing.median * bandwidth / job.bytes();
+  state.counters["voxels"] = static_cast<double>(plain.grid().voxel_count());
+  state.counters["tets"] = workload.tet_count();
   state.counters["kernel"] = 1e3 * (report.timings.setup + report.timings.mask +
                                     report.timings.cull + report.timings.raster);
 }
@@ -105,10 +112,23 @@ void run(benchmark::State& state, const Workload& workload) {
 
 void add_resident_rows(const Selection& selection) {
   if (!selection.with_cuda) return;
-  for (const Workload& workload :
-       {torso_700(), rotated(256), rotated(384), waved(256, 5000), waved(256, 500000)}) {
-    add_row("resident/" + workload.name + "/linear/float32/cuda",
-            [workload](benchmark::State& state) { run(state, workload); });
+  const SkipVariant no_culling = skip_variants().front();
+  const auto add = [](const Workload& workload, const SkipVariant& without) {
+    add_row("resident/" + workload.name + "/linear/float32/cuda" +
+                (without.name.empty() ? "" : "/without:" + without.name),
+            [=](benchmark::State& state) { run(state, workload, without.skip); });
+  };
+  for (const Workload& workload : {torso_700(), orange_160(), fish_35(), waved(256, 5000),
+                                   waved(256, 50000), waved(256, 500000)}) {
+    add(workload, {});
+  }
+  if (!selection.is_full()) {
+    for (const std::int64_t n : {256, 384}) add(rotated(n), {});
+    return;
+  }
+  for (const Workload& workload : figure_workloads()) {
+    add(workload, {});
+    add(workload, no_culling);
   }
 }
 

@@ -54,7 +54,7 @@ void add_overlap_rows(const Selection& selection);
 
 /// resident/WORKLOAD/.../cuda: wall time of steps whose source, positions and output stay in memory
 /// of the device, from the call to its return, which waits for the device. Two poses in turn; the
-/// output must have the bits of back end cpu.
+/// output must be that of back end cpu but for fused multiply-add.
 ///
 ///   kernel                    sum of the stages of one step
 ///   floor, floor_ratio        the device's sampling floor, its layout in the label; time / floor
@@ -80,6 +80,15 @@ void add_resident_rows(const Selection& selection);
 ///   rate_share          rate / locked_rate
 ///   lock                page-locking and unlocking the memory
 void add_copy_rows(const Selection& selection);
+
+/// paper/WORKLOAD/.../PLACE, with /without:cells: steps by the method of Gascon et al. 2013, on a
+/// device in its memory. A row is refused if more than one voxel in 200 is a hole or painted, or a
+/// sample is off by 0.02: its float32 tests miss voxels and take maps of neighbors.
+///
+///   tested, pass_share  voxels tested against a tetrahedron; those within it / tested (cpu)
+///   culled_share        cells that masks reject / cells of all bounding boxes (cpu, with cells)
+///   compared, holes, painted, max_error, voxels, tets
+void add_paper_rows(const Selection& selection);
 
 /// region/WORKLOAD: steps that compute the middle half of each axis, an eighth of the voxels. In
 /// turn with steps of the whole grid, which must have the same bits there.

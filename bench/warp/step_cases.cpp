@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "bench/warp/figure_cases.hpp"
+
 namespace tetwarp::bench {
 namespace {
 constexpr Filter filters[] = {Filter::nearest, Filter::linear};
@@ -47,15 +49,17 @@ class Rows {
 /// One step of every workload; time against volume size and against tetrahedra, with and without
 /// culling.
 void add_workloads(Rows& rows, StepCase row, bool full) {
-  for (const Workload& workload : {ties_128(), torso_700(), fish_35()}) {
+  for (const Workload& workload : {ties_128(), torso_700(), fish_35(), orange_160()}) {
     row.workload = workload;
     rows.add(row);
   }
   const SkipVariant no_culling = skip_variants().front();
-  for (const std::int64_t n : {128, 256, 384, 512}) {
-    row.workload = rotated(n);
-    if (full || n <= 384) rows.add(row);
-    if (full || n <= 256) rows.add_without(row, no_culling);
+  for (const Workload& workload : figure_workloads()) {
+    row.workload = workload;
+    const bool is_small = workload.dims[0] <= 256;
+    const bool is_middle = workload.dims[0] == 384 && workload.tet_count() == 1080;
+    if (full || is_small || is_middle) rows.add(row);
+    if (full || is_small) rows.add_without(row, no_culling);
   }
   for (const int tets : waved_tet_counts) {
     row.workload = waved(256, tets);
@@ -147,8 +151,10 @@ std::string place_of(Backend backend, int threads) {
   return backend == Backend::cpu ? name + "/threads:" + std::to_string(threads) : name;
 }
 
-Protocol protocol_for(Backend backend, int threads) {
-  return {.busy_threads = backend == Backend::cpu ? static_cast<double>(threads) : 0.0};
+Protocol protocol_for(Backend backend, int threads, double seconds) {
+  Protocol protocol{.busy_threads = backend == Backend::cpu ? static_cast<double>(threads) : 0.0};
+  if (seconds > 1) protocol.repetitions = protocol.attempts = 3;
+  return protocol;
 }
 
 std::vector<StepCase> step_cases(const Selection& selection) {

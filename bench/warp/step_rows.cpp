@@ -159,7 +159,8 @@ void run_beside_whole(benchmark::State& state, const StepCase& row, Subject& sub
     return refuse(state, "a switch changes the output");
   }
   const std::function<void()> jobs[] = {[&] { subject.timed_step(); }, [&] { whole.timed_step(); }};
-  const std::vector<Timing> timings = time_in_turn(jobs, protocol_for(row.backend, row.threads));
+  const std::vector<Timing> timings =
+      time_in_turn(jobs, protocol_for(row.backend, row.threads, subject.first_step));
   count_row(state, subject, timings[0]);
   state.counters["with"] = 1e3 * timings[1].median;
   state.counters["saved"] = 1 - timings[1].median / timings[0].median;
@@ -177,7 +178,8 @@ void run_beside_floor(benchmark::State& state, const StepCase& row, Subject& sub
       jobs.back()();  // first touch
     }
   }
-  const std::vector<Timing> timings = time_in_turn(jobs, protocol_for(row.backend, row.threads));
+  const std::vector<Timing> timings =
+      time_in_turn(jobs, protocol_for(row.backend, row.threads, subject.first_step));
   count_row(state, subject, timings[0]);
   if (!has_floor) return;
   const auto bytes = static_cast<double>(subject.job->output_bytes()) +

@@ -113,8 +113,18 @@ Workload shifted_256() {
   return {"W5_shifted_256", {256, 256, 256}, {6, 6, 6}, Deformation::shift};
 }
 
-Workload rotated(std::int64_t n) {
-  return {"W2_rotated_" + std::to_string(n), {n, n, n}, {6, 6, 6}, Deformation::rotation};
+Workload orange_160() {
+  return {"W6_orange_160", {198, 199, 160}, {4, 4, 2}, Deformation::bend};
+}
+
+Workload rotated(std::int64_t n, int tets) {
+  const int edge = static_cast<int>(std::lround(std::cbrt(tets / 5.0)));
+  if (5 * edge * edge * edge != tets) {
+    throw std::invalid_argument("rotated: " + std::to_string(tets) + " is not 5 k^3");
+  }
+  std::string name = "W2_rotated_" + std::to_string(n);
+  if (tets != 1080) name += "_" + std::to_string(tets);
+  return {name, {n, n, n}, {edge, edge, edge}, Deformation::rotation};
 }
 
 Workload waved(std::int64_t n, int tets) {

@@ -36,14 +36,18 @@ struct Workload {
   int tet_count() const { return 5 * cells[0] * cells[1] * cells[2]; }
 };
 
-/// The inputs by number: W0 ties, W1 torso, W2 a rotated n^3 volume in 1,080 tetrahedra, W3 an n^3
-/// volume in few or many tetrahedra, W4 a long fish, W5 a volume moved by whole voxels.
+/// The inputs by number: W0 ties, W1 torso, W2 a rotated n^3 volume, W3 an n^3 volume in few or
+/// many tetrahedra, W4 a long fish, W5 a volume moved by whole voxels, W6 an orange. Sizes and
+/// numbers of tetrahedra of torso, fish and orange are those of Gascon et al. 2013, as are those of
+/// W2.
 Workload ties_128();
 Workload torso_700();
-Workload rotated(std::int64_t n);
+/// @param tets  5 k^3; named after them unless there are 1,080
+Workload rotated(std::int64_t n, int tets = 1080);
 Workload waved(std::int64_t n, int tets);  ///< tets: one of waved_tet_counts
 Workload fish_35();
 Workload shifted_256();
+Workload orange_160();
 inline constexpr std::array waved_tet_counts{40, 320, 1080, 5000, 50000, 500000};
 
 /// Mesh, deformed nodes and grids of a workload.

@@ -13,6 +13,7 @@
 #include "host/base/parallel.hpp"
 #include "host/base/region_grid.hpp"
 #include "host/base/warp_backend.hpp"
+#include "host/warp/backend_choice.hpp"
 #include "host/warp/hex_split.hpp"
 #include "host/warp/step_queue.hpp"
 #include "host/warp/transform_checks.hpp"
@@ -138,6 +139,17 @@ void check_step(const WarpPlan& plan,
   }
 }
 
+/// What one step takes on the cpu [s], whether or not the arguments are valid.
+double cpu_seconds_of(const Volume& source, const Mesh& mesh, const WarpOptions& options) {
+  const Grid& grid = options.output_grid ? *options.output_grid : source.grid;
+  const Region region = options.region.value_or(Region{{0, 0, 0}, grid.dims});
+  double samples = source.components;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    samples *= static_cast<double>(region.end[axis] - region.begin[axis]);
+  }
+  return estimated_cpu_seconds(options, samples, !mesh.hexes.empty());
+}
+
 std::unique_ptr<WarpBackend> make_backend(Backend backend, const WarpPlan& plan) {
   switch (backend) {
     case Backend::cuda:
@@ -238,10 +250,17 @@ WarpResult warp(const Volume& source,
                 const Mesh& mesh,
                 const std::vector<Point3>& deformed,
                 const WarpOptions& options) {
-  Warper warper(source, mesh, options);
-  Volume volume = warper.step(deformed);
-  volume.name = source.name;
-  return {std::move(volume), warper.report()};
+  WarpOptions chosen = options;
+  std::optional<std::string> reason;
+  if (options.backend == Backend::automatic) {
+    std::tie(chosen.backend, reason) =
+        choose_backend_for(cpu_seconds_of(source, mesh, options), options);
+  }
+  Warper warper(source, mesh, chosen);
+  WarpResult result{warper.step(deformed), warper.report()};
+  result.volume.name = source.name;
+  if (reason) result.report.backend_reason = *reason;
+  return result;
 }
 
 }  // namespace tetwarp

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/warp/backend_choice.hpp"
 #include "tests/support/cli_scene.hpp"
 
 namespace tetwarp::test {
@@ -183,7 +184,9 @@ TEST(Cli, NamesTheBackEndInItsOneLineAndTheReasonForItInTheReport) {
   EXPECT_EQ(automatic.out.find("CUDA"), std::string::npos) << automatic.out;
   EXPECT_EQ(std::count(automatic.out.begin(), automatic.out.end(), '\n'), 1) << automatic.out;
   const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
-  EXPECT_FALSE(report["backend_reason"].get<std::string>().empty());
+  const auto [backend, reason] = choose_backend_for(0, {});  // so little work
+  EXPECT_EQ(report["backend"], name_of(backend));
+  EXPECT_EQ(report["backend_reason"], reason);
 }
 
 TEST(Cli, WritesTheFileThatALinkLeadsTo) {

@@ -241,9 +241,9 @@ TEST(WarpArguments, CudaWithoutADeviceGivesTheReason) {
   EXPECT_EQ(message_of<CudaError>([&] { call.run(); }),
             "back end cuda: " + status.reason + "; use cpu or auto");
   call.options.backend = Backend::automatic;
-  const WarpResult result = warp(call.source, call.mesh, call.deformed, call.options);
-  EXPECT_EQ(result.report.backend, Backend::cpu);
-  EXPECT_EQ(result.report.backend_reason, "no usable CUDA device (" + status.reason + ")");
+  const Warper warper(call.source, call.mesh, call.options);
+  EXPECT_EQ(warper.report().backend, Backend::cpu);
+  EXPECT_EQ(warper.report().backend_reason, "no usable CUDA device (" + status.reason + ")");
 }
 
 class WarpProgress : public ::testing::TestWithParam<Backend> {};

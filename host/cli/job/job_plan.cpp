@@ -9,14 +9,17 @@
 #include <set>
 #include <stdexcept>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include "host/base/region_grid.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/ranks.hpp"
 #include "host/cli/job/array_checks.hpp"
 #include "host/cli/job/memory_plan.hpp"
 #include "host/cli/job/output_writer.hpp"
+#include "host/warp/backend_choice.hpp"
 #include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
@@ -175,11 +178,11 @@ void set_outputs(VolumePlan& plan, const fs::path& output, const WarpArguments& 
   }
 }
 
+/// What is read and which grid is written.
 VolumePlan plan_volume(const std::string& path,
                        const fs::path& output,
                        const WarpArguments& arguments,
                        const MeshReader& mesh,
-                       Backend backend,
                        const std::vector<std::int64_t>& steps) {
   VolumePlan plan;
   plan.path = path;
@@ -215,6 +218,16 @@ VolumePlan plan_volume(const std::string& path,
                                 ": --outputs forward is on the volume's own grid; leave out "
                                 "--grid, --dims, --origin, --spacing and --direction");
   }
+  return plan;
+}
+
+/// Plans memory, what is done at the same time, and the output files.
+void plan_outputs(VolumePlan& plan,
+                  const fs::path& output,
+                  const WarpArguments& arguments,
+                  const MeshReader& mesh,
+                  Backend backend,
+                  const std::vector<std::int64_t>& steps) {
   plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && plan.steps.size() > 1 &&
                        leaves_time(backend, arguments);
   set_outputs(plan, output, arguments);
@@ -223,7 +236,19 @@ VolumePlan plan_volume(const std::string& path,
       std::ranges::any_of(arrays_written(plan, arguments), is_field)) {
     plan.notes.push_back(output.string() + ": " + itk_slice_note);
   }
-  return plan;
+}
+
+/// What the cpu takes for all that one of the processes of this job computes.
+double cpu_seconds_of(const JobPlan& plan, const WarpArguments& arguments) {
+  double samples = 0;
+  for (const VolumePlan& volume : plan.volumes) {
+    for (const ArrayHeader& array : volume.arrays) {
+      samples += static_cast<double>(volume.steps.size()) * array.components *
+                 static_cast<double>(volume.written_grid.voxel_count());
+    }
+  }
+  return estimated_cpu_seconds(arguments.warp, samples / launched_count(),
+                               plan.mesh.header().hex_count > 0);
 }
 
 /// The name of an output in a folder: that of its volume. A pair .hdr and .img becomes one file
@@ -275,13 +300,12 @@ bool may_resume_within(const VolumePlan& volume, const WarpArguments& arguments)
 
 JobPlan plan_job(const WarpArguments& arguments) {
   check_kinds(arguments);
-  const auto [backend, reason] = choose_backend(arguments.warp.backend, arguments.warp.device);
   MeshReadOptions mesh_options = arguments.mesh;
   mesh_options.import.axes = arguments.axes.value_or(Axes::ras);
   JobPlan plan{.mesh = MeshReader(arguments.mesh_file(), mesh_options),
                .steps = {},
-               .backend = backend,
-               .backend_reason = reason,
+               .backend = {},
+               .backend_reason = {},
                .output_folder = {},
                .volumes = {},
                .warnings = {},
@@ -297,11 +321,18 @@ JobPlan plan_job(const WarpArguments& arguments) {
   const bool several = volumes.size() > 1;
   if (several) plan.output_folder = arguments.output;
   if (!several) check_volume_name(arguments.output);
+  const auto output_of = [&](const std::string& volume) {
+    return several ? fs::path(arguments.output) / output_name_of(volume)
+                   : fs::path(arguments.output);
+  };
   for (const std::string& volume : volumes) {
-    const fs::path output =
-        several ? fs::path(arguments.output) / output_name_of(volume) : fs::path(arguments.output);
-    plan.volumes.push_back(plan_volume(volume, output, arguments, plan.mesh, backend, plan.steps));
-    const VolumePlan& planned = plan.volumes.back();
+    plan.volumes.push_back(
+        plan_volume(volume, output_of(volume), arguments, plan.mesh, plan.steps));
+  }
+  std::tie(plan.backend, plan.backend_reason) =
+      choose_backend_for(cpu_seconds_of(plan, arguments), arguments.warp);
+  for (VolumePlan& planned : plan.volumes) {
+    plan_outputs(planned, output_of(planned.path), arguments, plan.mesh, plan.backend, plan.steps);
     plan.warnings.insert(plan.warnings.end(), planned.warnings.begin(), planned.warnings.end());
     plan.notes.insert(plan.notes.end(), planned.notes.begin(), planned.notes.end());
   }
