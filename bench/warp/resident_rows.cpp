@@ -4,6 +4,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "bench/measure/device_floors.hpp"
@@ -11,6 +12,7 @@
 #include "bench/warp/figure_cases.hpp"
 #include "bench/warp/rows.hpp"
 #include "bench/warp/warp_job.hpp"
+#include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::bench {
 namespace {
@@ -58,23 +60,29 @@ class ResidentJob {
   Warper warper_;
 };
 
-/// Whether float32 samples are those of the cpu, but for fused multiply-add: it moves a position by
-/// less than 170 u (u = 2^-24), and neighbors along each axis differ by at most the range of the
-/// samples; 4 u for the blends.
+/// Whether samples are those of the cpu, but for fused multiply-add: it moves a position by less than
+/// 170 u (u = 2^-24), and neighbors along each axis differ by at most the range of the samples; 4 u
+/// for the blends. An integer may be rounded the other way.
+template <class T>
 bool agree(const std::vector<std::byte>& output, const WarpJob& cpu) {
-  std::vector<float> found(output.size() / sizeof(float)), wanted(found.size());
+  std::vector<T> found(output.size() / sizeof(T)), wanted(found.size());
   if (output.size() != cpu.output_bytes()) return false;
   std::memcpy(found.data(), output.data(), output.size());
   std::memcpy(wanted.data(), cpu.output(), output.size());
   const auto [least, most] = std::ranges::minmax(wanted);
-  const float bound = 0x1p-24f * (3 * 170 + 4) * (most - least);
-  return std::ranges::equal(found, wanted,
-                            [bound](float f, float w) { return std::abs(f - w) <= bound; });
+  const double range = static_cast<double>(most) - static_cast<double>(least);
+  const double bound = std::is_integral_v<T> ? 1 : 0x1p-24 * (3 * 170 + 4) * range;
+  return std::ranges::equal(found, wanted, [bound](T f, T w) {
+    return std::abs(static_cast<double>(f) - static_cast<double>(w)) <= bound;
+  });
 }
 
-void run(benchmark::State& state, const Workload& workload, const SkipOptions& skip) {
+void run(benchmark::State& state,
+         const Workload& workload,
+         PixelType type,
+         const SkipOptions& skip) {
   const scenes::Scene& scene = inputs().scene(workload);
-  const VolumeView source = inputs().image(workload);
+  const VolumeView source = inputs().image(workload, type);
   WarpJob plain(scene, source, {.backend = Backend::cpu});
   plain.step();
   StepReport report;
@@ -86,7 +94,9 @@ void run(benchmark::State& state, const Workload& workload, const SkipOptions& s
   ResidentJob job(scene, source, skip);
   job.step(1);
   job.step(0);
-  if (!agree(job.output(), plain)) {
+  bool is_same = false;
+  with_pixel_type(source.type, [&]<class T>(T) { is_same = agree<T>(job.output(), plain); });
+  if (!is_same) {
     return refuse(state, "a step in device memory differs from that of the cpu");
   }
   std::size_t pose = 0;
@@ -113,10 +123,11 @@ void run(benchmark::State& state, const Workload& workload, const SkipOptions& s
 void add_resident_rows(const Selection& selection) {
   if (!selection.with_cuda) return;
   const SkipVariant no_culling = skip_variants().front();
-  const auto add = [](const Workload& workload, const SkipVariant& without) {
-    add_row("resident/" + workload.name + "/linear/float32/cuda" +
+  const auto add = [](const Workload& workload, const SkipVariant& without,
+                      PixelType type = PixelType::float32) {
+    add_row("resident/" + workload.name + "/linear/" + name_of(type) + "/cuda" +
                 (without.name.empty() ? "" : "/without:" + without.name),
-            [=](benchmark::State& state) { run(state, workload, without.skip); });
+            [=](benchmark::State& state) { run(state, workload, type, without.skip); });
   };
   for (const Workload& workload : {torso_700(), orange_160(), fish_35(), waved(256, 5000),
                                    waved(256, 50000), waved(256, 500000)}) {
@@ -124,12 +135,13 @@ void add_resident_rows(const Selection& selection) {
   }
   if (!selection.is_full()) {
     for (const std::int64_t n : {256, 384}) add(rotated(n), {});
-    return;
+  } else {
+    for (const Workload& workload : figure_workloads()) {
+      add(workload, {});
+      add(workload, no_culling);
+    }
   }
-  for (const Workload& workload : figure_workloads()) {
-    add(workload, {});
-    add(workload, no_culling);
-  }
+  for (const PixelType type : {PixelType::int16, PixelType::uint8}) add(rotated(384), {}, type);
 }
 
 }  // namespace tetwarp::bench
