@@ -216,8 +216,24 @@ if(NOT BUILD_SHARED_LIBS)
     tests/emulated/test_affine_simt.cpp tests/emulated/test_anderson_simt.cpp
     tests/emulated/test_cell_group_simt.cpp tests/emulated/test_cell_raster_simt.cpp
     tests/emulated/test_contact_grid_simt.cpp tests/emulated/test_contact_simt.cpp
-    tests/emulated/test_grouped_scan_simt.cpp tests/emulated/test_simt.cpp)
+    tests/emulated/test_each_shape.cpp tests/emulated/test_grouped_scan_simt.cpp
+    tests/emulated/test_island_team_simt.cpp tests/emulated/test_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
+
+  # The thread sanitizer finds races of kernels on the emulated device.
+  include(CheckCXXSourceRuns)
+  set(CMAKE_REQUIRED_FLAGS -fsanitize=thread)
+  check_cxx_source_runs("#include <sanitizer/tsan_interface.h>
+    int main() { __tsan_destroy_fiber(__tsan_create_fiber(0)); }" TETWARP_HAS_THREAD_SANITIZER)
+  unset(CMAKE_REQUIRED_FLAGS)
+  if(TETWARP_HAS_THREAD_SANITIZER)
+    tetwarp_add_tests(tetwarp_race_tests SOURCES tests/emulated/test_races_simt.cpp)
+    target_compile_options(tetwarp_race_tests PRIVATE -fsanitize=thread)
+    target_link_options(tetwarp_race_tests PRIVATE -fsanitize=thread)
+    set_target_properties(tetwarp_race_tests PROPERTIES
+      DISABLE_PRECOMPILE_HEADERS ON POSITION_INDEPENDENT_CODE ON)
+    tetwarp_discover(tetwarp_race_tests simt)
+  endif()
 
   # Every back end through the public calls, compiled once for two programs: in one of them back end
   # cuda is the emulated device, in the other a real one.

@@ -20,6 +20,7 @@
 #include "host/exec/pair_sort.hpp"
 #include "kernels/base/cell_pair.hpp"
 #include "kernels/base/grouped_sums.hpp"
+#include "kernels/base/lane_sums.hpp"
 #include "kernels/base/pair_limit.hpp"
 #include "kernels/base/stage_times.hpp"
 #include "kernels/base/view.hpp"
@@ -67,6 +68,12 @@ class CpuExec : public HostCopies {
   void for_each(const char* label, std::int64_t count, const Op& op) const {
     const Clock clock(*this, label);
     parallel_for(threads_for(count), count, op);
+  }
+  /// Calls op.finish(i, sum of op.part(i, lane) over Op::lanes lanes) for i in [0, count), in any
+  /// order; the sum has the tree of summed_by_lanes().
+  template <class Op>
+  void for_each_by_lanes(const char* label, std::int64_t count, const Op& op) const {
+    for_each(label, count, [&](std::int64_t i) { op.finish(i, summed_by_lanes(op, i)); });
   }
   /// op(0), by a single thread.
   template <class Op>

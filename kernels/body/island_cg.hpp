@@ -1,7 +1,7 @@
 /// @file island_cg.hpp
 /// Preconditioned conjugate gradients on the rows of one coupling island, with a block Jacobi
-/// preconditioner D. The same code runs on threads of the host, on one block of a device and on a
-/// whole device.
+/// preconditioner D. The same code runs on threads of the host, on one block or a grid of a device
+/// in a single launch, and on a whole device stage by stage.
 ///
 /// Conjugate gradients run with numbers of type T. Between runs the residual is computed anew in
 /// float64, and the next run solves for the correction, until |r|_{D^-1} <= tolerance |b|_{D^-1},
@@ -32,6 +32,7 @@ struct GradientArrays {
 struct GradientOptions {
   double tolerance = 1e-6;
   std::int64_t max_iterations = 10000;
+  bool is_watched = false;  ///< the caller may end a solve, and is asked during its iterations
 };
 
 /// How the solve of an island ended.
@@ -42,7 +43,8 @@ struct GradientEnd {
   bool is_stopped = false;  ///< the host ended it
 };
 
-/// Sums and factors of an iteration, in memory of the executor.
+/// Sums and factors of an iteration, in memory of the executor. Where all threads of an executor
+/// receive sums, each of them has its own.
 struct GradientScalars {
   PlainSums<2> start;                    ///< r . D^-1 r and b . D^-1 b of the float64 residual
   PlainSums<1> square, next, curvature;  ///< r . z, the next one, p . A p
@@ -205,6 +207,18 @@ TETWARP_HD constexpr const char* gradient_label() {
   return "body/linear";
 }
 
+/// Sums op(row) over rows [begin, end) into a member of the scalars.
+template <class Exec, class Op, class Sum>
+TETWARP_ANY_EXEC void gradient_sum(
+    Exec& exec, std::int64_t begin, std::int64_t end, const Op& op, Sum* out) {
+  exec.sum_to(gradient_label(), begin, end, op, out);
+}
+/// Runs an op on the scalars.
+template <class Exec, class Op>
+TETWARP_ANY_EXEC void gradient_once(Exec& exec, const Op& op) {
+  exec.once(gradient_label(), op);
+}
+
 /// q = A p on rows [begin, end).
 /// @param curvature  out: p . q, in memory of the executor
 template <class Exec, class T>
@@ -213,7 +227,7 @@ TETWARP_ANY_EXEC void island_product(Exec& exec,
                                      std::int64_t begin,
                                      std::int64_t end,
                                      PlainSums<1>* curvature) {
-  exec.sum_to(gradient_label(), begin, end, IslandProductOp<T>{a}, curvature);
+  gradient_sum(exec, begin, end, IslandProductOp<T>{a}, curvature);
 }
 
 /// One iteration on rows [begin, end).
@@ -226,9 +240,9 @@ struct GradientIteration {
   template <class Exec>
   TETWARP_ANY_EXEC void run(Exec& exec) const {
     island_product(exec, a, begin, end, &scalars->curvature);
-    exec.once(gradient_label(), GradientLengthOp{scalars});
-    exec.sum_to(gradient_label(), begin, end, IslandStepOp<T>{a, &scalars->step}, &scalars->next);
-    exec.once(gradient_label(), GradientMixOp{scalars});
+    gradient_once(exec, GradientLengthOp{scalars});
+    gradient_sum(exec, begin, end, IslandStepOp<T>{a, &scalars->step}, &scalars->next);
+    gradient_once(exec, GradientMixOp{scalars});
     exec.for_each(gradient_label(), end - begin,
                   FromIndex<IslandTurnOp<T>>{{a, &scalars->turn}, begin});
   }
@@ -264,7 +278,7 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
   GradientEnd result;
   double before = 0;
   for (int run = 0; run < max_runs; ++run) {
-    exec.sum_to(gradient_label(), begin, end, IslandStartOp<T>{a}, &scalars->start);
+    gradient_sum(exec, begin, end, IslandStartOp<T>{a}, &scalars->start);
     const PlainSums<2> start = exec.load(&scalars->start);
     const double square = start.value[0], unit = start.value[1];
     if (unit == 0) {  // b = 0
@@ -282,14 +296,14 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
     result.is_converged = result.residual <= options.tolerance;
     if (result.is_converged || result.iterations >= options.max_iterations) break;
     if (run > 0 && !(square < 0.25 * before)) {  // no further progress
-      exec.sum_to(gradient_label(), begin, end, GradientRoundingOp<T>{a}, &scalars->next);
+      gradient_sum(exec, begin, end, GradientRoundingOp<T>{a}, &scalars->next);
       result.is_converged = square <= 16 * exec.load(&scalars->next).value[0];
       break;
     }
     before = square;
     const double target =
         max_of(0.5 * square_of(options.tolerance) * unit, square_of(run_target) * square);
-    exec.once(gradient_label(), GradientBeginOp{scalars});
+    gradient_once(exec, GradientBeginOp{scalars});
     while (result.iterations < options.max_iterations) {
       const std::int64_t count =
           min_of(Iterations::most, options.max_iterations - result.iterations);

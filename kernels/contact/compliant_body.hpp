@@ -10,6 +10,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/base/plain_sums.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/body/row_product.hpp"
 
@@ -87,49 +88,65 @@ struct ComplianceBlockOp {
   }
 };
 
-/// One index = one number of a node: the velocity caused by impulses on the nodes. Successive
-/// indices read successive numbers of the compliance.
+/// One lane's part of the product of three rows of a matrix with a vector: every 32nd column. The
+/// lanes of a warp read successive numbers of each row.
+/// @param a     the first of the rows, [3][size]
+/// @param size  columns
+template <class T>
+TETWARP_HD PlainSums<3> three_rows_part(const T* a,
+                                        const double* vector,
+                                        std::int64_t size,
+                                        int lane) {
+  PlainSums<3> sums;
+  for (std::int64_t j = lane; j < size; j += 32) {
+    for (int i = 0; i < 3; ++i) sums.value[i] += double{a[i * size + j]} * vector[j];
+  }
+  return sums;
+}
+
+/// One index = one node: the velocity caused by impulses on the nodes. By lanes.
 struct NodeMoveOp {
+  using Sum = PlainSums<3>;
+  static constexpr int lanes = 32;
+
   CompliantBodies of;
   View<const double> push, from;  ///< [nodes][3] in frames; `from` may be empty: zero
   View<double> velocity;          ///< out: from + compliance push
 
-  TETWARP_HD void operator()(std::int64_t number) const {
-    const CompliantBody& own = of.of_node(number / 3);
-    const std::int64_t first = 3 * std::int64_t{own.first_node};
-    const std::int64_t size = 3 * std::int64_t{own.node_count};
-    const float* a = of.compliance.data + own.compliance + number - first;
-    double sum = from.size == 0 ? 0 : from[number];
-    for (std::int64_t j = 0; j < size; ++j, a += size) sum += double{*a} * push[first + j];
-    velocity[number] = sum;
+  TETWARP_HD Sum part(std::int64_t node, int lane) const {
+    const CompliantBody& own = of.of_node(node);
+    const std::int64_t first = own.first_node, size = 3 * std::int64_t{own.node_count};
+    const float* const a = of.compliance.data + own.compliance + 3 * (node - first) * size;
+    return three_rows_part(a, push.data + 3 * first, size, lane);
+  }
+  TETWARP_HD void finish(std::int64_t node, const Sum& sum) const {
+    for (int i = 0; i < 3; ++i) {
+      velocity[3 * node + i] = (from.size == 0 ? 0 : from[3 * node + i]) + sum.value[i];
+    }
   }
 };
 
-/// One index = one number of `moved`: M^-1 push, both in frames. Successive indices read successive
-/// numbers of the inverse.
+/// One index = one row: its numbers of M^-1 push, both in frames. By lanes.
 struct ComplianceOp {
+  using Sum = PlainSums<3>;
+  static constexpr int lanes = 32;
+
   CompliantBodies of;
   View<const double> push;
   View<double> moved;  ///< out
 
-  TETWARP_HD void operator()(std::int64_t number) const {
-    const CompliantBody& own = of.of_row(number / 3);
-    const std::int64_t first = 3 * std::int64_t{own.first};
-    const std::int64_t size = 3 * std::int64_t{own.count}, i = number - first;
-    if (own.inverse == nullptr) {
-      moved[number] = own.relaxation * product(of.diagonal.at(own.system_row) + i, first, size);
-    } else {
-      moved[number] = of.damping * product(own.inverse + i, first, size);
-    }
+  TETWARP_HD Sum part(std::int64_t row, int lane) const {
+    const CompliantBody& own = of.of_row(row);
+    const std::int64_t size = 3 * std::int64_t{own.count}, place = 3 * (row - own.first) * size;
+    const double* const vector = push.data + 3 * std::int64_t{own.first};
+    return own.inverse == nullptr
+               ? three_rows_part(of.diagonal.at(own.system_row) + place, vector, size, lane)
+               : three_rows_part(own.inverse + place, vector, size, lane);
   }
-
- private:
-  /// Product with a row of a symmetric matrix, which is read as a column.
-  template <class T>
-  TETWARP_HD double product(const T* a, std::int64_t first, std::int64_t size) const {
-    double sum = 0;
-    for (std::int64_t j = 0; j < size; ++j, a += size) sum += double{*a} * push[first + j];
-    return sum;
+  TETWARP_HD void finish(std::int64_t row, const Sum& sum) const {
+    const CompliantBody& own = of.of_row(row);
+    const double factor = own.inverse == nullptr ? own.relaxation : of.damping;
+    for (int i = 0; i < 3; ++i) moved[3 * row + i] = factor * sum.value[i];
   }
 };
 

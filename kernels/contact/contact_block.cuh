@@ -11,6 +11,7 @@
 
 #include "kernels/contact/anderson_lanes.cuh"
 #include "kernels/contact/contact_methods.hpp"
+#include "kernels/contact/delassus_lanes.cuh"
 #include "kernels/contact/island_cache.cuh"
 #include "kernels/contact/thinned_event_log.cuh"
 #include "kernels/exec/exec_buffer.cuh"
@@ -20,7 +21,6 @@ namespace tetwarp {
 
 constexpr int island_threads = sum_threads;
 constexpr int island_blocks = 2;               ///< resident per multiprocessor: 255 registers
-constexpr std::int64_t block_contacts = 2048;  ///< larger islands use the whole device
 constexpr std::int64_t warp_contacts = 32;     ///< larger islands use a block
 
 /// An island to solve, and its stop criterion.

@@ -159,12 +159,15 @@ class ContactPipeline {
     exec_.for_each("contact/sweep", island_.contact_count(), FromIndex<Op>{op, island_.slot_begin});
   }
   TETWARP_ANY_EXEC void find_velocities() {
+    const std::int64_t first = island_.slot_begin, count = island_.contact_count();
     if (numbers_.is_local) {
-      run_contacts(ContactVelocityOp<DelassusView<T>, T>{numbers_.delassus, state_.impulse.data,
-                                                         state_.velocity});
+      contact_velocities(exec_, first, count,
+                         ContactVelocityOp<DelassusView<T>, T>{
+                             numbers_.delassus, state_.impulse.data, state_.velocity});
     } else {
-      run_contacts(ContactVelocityOp<BodiesView<T>, T>{numbers_.bodies, state_.body_velocity.data,
-                                                       state_.velocity});
+      contact_velocities(exec_, first, count,
+                         ContactVelocityOp<BodiesView<T>, T>{
+                             numbers_.bodies, state_.body_velocity.data, state_.velocity});
     }
   }
 

@@ -237,6 +237,16 @@ struct ContactVelocityOp {
   }
 };
 
+/// Velocities of contacts [first, first + count).
+/// @param op  ContactVelocityOp
+template <class Exec, class Op>
+TETWARP_ANY_EXEC void contact_velocities(Exec& exec,
+                                         std::int64_t first,
+                                         std::int64_t count,
+                                         const Op& op) {
+  exec.for_each("contact/sweep", count, FromIndex<Op>{op, first});
+}
+
 /// Updates the impulse of every contact of an island once, color after color.
 ///
 /// Contacts are sorted by color, so the result equals that of a serial pass in their order.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "kernels/contact/contact_sweep.hpp"
+#include "kernels/contact/delassus_lanes.cuh"
 #include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
@@ -12,6 +13,16 @@ namespace tetwarp {
 template <class Op>
 void contact_sweep(CudaExec& exec, View<const std::int64_t> color_start, const Op& op) {
   exec.for_each_part(color_start, op);
+}
+template <class T>
+void contact_sweep(CudaExec& exec,
+                   View<const std::int64_t> color_start,
+                   const DelassusSweepOp<T>& op) {
+  if (has_long_rows(op.delassus)) {
+    exec.for_each_part(color_start, DelassusSweepLanesOp<T>{op});
+  } else {
+    exec.for_each_part(color_start, op);
+  }
 }
 
 }  // namespace tetwarp

@@ -38,22 +38,21 @@ struct TouchingNodes {
       }
     }
   }
-  /// J^T r of the contacts on a node.
-  /// @param r     (block, axis): impulse of the contact of a block
-  /// @param push  out, [3] in the frame of its body
+  /// J^T r of every 32nd contact on a node, in the frame of its body.
+  /// @param r  (block, axis): impulse of the contact of a block
   template <class Impulse>
-  TETWARP_HD void push_of(std::int64_t node, const Impulse& r, double* push) const {
+  TETWARP_HD PlainSums<3> push_part(std::int64_t node, int lane, const Impulse& r) const {
     const std::int64_t row = bodies.row_of_node[node];
-    double sum[3] = {0, 0, 0};
-    for (std::int64_t t = rows.touch_start[row]; t < rows.touch_start[row + 1]; ++t) {
+    PlainSums<3> sum;
+    for (std::int64_t t = rows.touch_start[row] + lane; t < rows.touch_start[row + 1]; t += 32) {
       const std::int64_t b = rows.touch[t];
       const double* const j = turned.data + 9 * b;
       for (int a = 0; a < 3; ++a) {
         const double own = r(b, a);
-        for (int i = 0; i < 3; ++i) sum[i] += j[3 * a + i] * own;
+        for (int i = 0; i < 3; ++i) sum.value[i] += j[3 * a + i] * own;
       }
     }
-    for (int i = 0; i < 3; ++i) push[i] = sum[i];
+    return sum;
   }
   /// The block that a part adds to its own contact in J M^-1 J^T.
   TETWARP_HD void own_block(std::int64_t part, double* block) const {
@@ -134,17 +133,22 @@ struct OwnBlockOp {
   }
 };
 
-/// One index = one node: J^T v of the contacts on it, with v the vector of each part.
+/// One index = one node: J^T v of the contacts on it, with v the vector of each part. By lanes.
 struct PartPushOp {
+  using Sum = PlainSums<3>;
+  static constexpr int lanes = 32;
+
   TouchingNodes of;
   View<const double> vector;  ///< [parts][3]
   View<double> push;          ///< out, [nodes][3]
 
-  TETWARP_HD void operator()(std::int64_t node) const {
-    const auto of_part = [this](std::int64_t block, int axis) {
+  TETWARP_HD Sum part(std::int64_t node, int lane) const {
+    return of.push_part(node, lane, [this](std::int64_t block, int axis) {
       return vector[3 * std::int64_t{of.rows.part[block]} + axis];
-    };
-    of.push_of(node, of_part, push.data + 3 * node);
+    });
+  }
+  TETWARP_HD void finish(std::int64_t node, const Sum& sum) const {
+    for (int i = 0; i < 3; ++i) push[3 * node + i] = sum.value[i];
   }
 };
 
@@ -166,23 +170,30 @@ struct PartVectorOp {
 
 /// One index = one body: lambda_b from two steps of the power iteration. With z the velocities
 /// before, v = D_b^-1 J z and q = J^T v, lambda_b is about q . C q / q . z. It is at most the
-/// number of rows, three per contact.
+/// number of rows, three per contact. By lanes.
 struct BodyScaleOp {
+  using Sum = PlainSums<2>;
+  static constexpr int lanes = 32;
   static constexpr double margin = 1.2;  ///< the estimate grows towards lambda_b
 
   CompliantBodies of;
   View<const double> push, before, after;  ///< q, z, C q, [nodes][3]
   View<double> scale;                      ///< out, [bodies]
 
-  TETWARP_HD void operator()(std::int64_t body) const {
+  TETWARP_HD Sum part(std::int64_t body, int lane) const {
     const CompliantBody& own = of.bodies[body];
-    double above = 0, below = 0;
     const std::int64_t begin = 3 * std::int64_t{own.first_node};
-    for (std::int64_t i = begin; i < begin + 3 * std::int64_t{own.node_count}; ++i) {
-      above += push[i] * after[i];
-      below += push[i] * before[i];
+    const std::int64_t end = begin + 3 * std::int64_t{own.node_count};
+    Sum sums;
+    for (std::int64_t i = begin + lane; i < end; i += lanes) {
+      sums.value[0] += push[i] * after[i];
+      sums.value[1] += push[i] * before[i];
     }
-    const double most = 3.0 * own.contact_count;
+    return sums;
+  }
+  TETWARP_HD void finish(std::int64_t body, const Sum& sums) const {
+    const double above = sums.value[0], below = sums.value[1];
+    const double most = 3.0 * of.bodies[body].contact_count;
     scale[body] = above < most * below ? max_of(min_of(margin * above / below, most), 1.0) : most;
   }
 };
@@ -238,15 +249,15 @@ void set_majorants(Exec& exec, const TouchingNodes& touching, const MajorantArra
   const std::int64_t contacts = to.constants.size, nodes = bodies.row_of_node.size;
   exec.for_each(label, contacts, OwnBlockOp{touching, to.constants, to.diagonal, to.vector});
   for (int n = 0;; ++n) {
-    exec.for_each(label, nodes, PartPushOp{touching, to.vector, to.push});
-    exec.for_each(label, 3 * nodes,
-                  NodeMoveOp{bodies, to.push, {}, n < power_steps ? to.before : to.after});
+    exec.for_each_by_lanes(label, nodes, PartPushOp{touching, to.vector, to.push});
+    exec.for_each_by_lanes(
+        label, nodes, NodeMoveOp{bodies, to.push, {}, n < power_steps ? to.before : to.after});
     if (n == power_steps) break;
     exec.for_each(label, touching.part_body.size,
                   PartVectorOp{touching, to.before, to.diagonal, to.vector});
   }
-  exec.for_each(label, bodies.bodies.size,
-                BodyScaleOp{bodies, to.push, to.before, to.after, to.scale});
+  exec.for_each_by_lanes(label, bodies.bodies.size,
+                         BodyScaleOp{bodies, to.push, to.before, to.after, to.scale});
   exec.for_each(label, contacts,
                 MajorantOp{touching, to.constants, to.diagonal, to.scale, to.majorant});
 }

@@ -33,8 +33,11 @@ struct ProximalState {
   }
 };
 
-/// One index = one contact.
+/// One index = one contact. By lanes, which share its blocks.
 struct ProximalStepOp {
+  using Sum = PlainSums<3>;
+  static constexpr int lanes = 4;
+
   TouchingNodes of;
   View<const ContactConstants<double>> constants, majorant;
   ContactSwitches switches;
@@ -46,14 +49,20 @@ struct ProximalStepOp {
   View<double> past;     ///< work, [contacts][6]: `ahead` and velocities, one step before the last
   View<ProximalState::Sums> terms;  ///< out, at the last step of a run, [contacts]
 
-  TETWARP_HD void operator()(std::int64_t contact) const {
+  TETWARP_HD Sum part(std::int64_t contact, int lane) const {
+    Sum u;
+    const std::int64_t end = of.rows.block_start[contact + 1];
+    for (std::int64_t b = of.rows.block_start[contact] + lane; b < end; b += lanes) {
+      of.add_velocity(b, b + 1, node_velocity.data, u.value);
+    }
+    return u;
+  }
+  TETWARP_HD void finish(std::int64_t contact, const Sum& moved) const {
     double u[3], r[3];
     for (int a = 0; a < 3; ++a) {
-      u[a] = of.rows.offset[3 * contact + a];
+      u[a] = of.rows.offset[3 * contact + a] + moved.value[a];
       r[a] = ahead[3 * contact + a];
     }
-    of.add_velocity(of.rows.block_start[contact], of.rows.block_start[contact + 1],
-                    node_velocity.data, u);
     const ContactConstants<double>& own = constants[contact];
     const bool is_last = step + 1 == ProximalState::steps_at_once;
     ProximalState::Sums sums;
@@ -96,18 +105,24 @@ struct ProximalStepOp {
   }
 };
 
-/// One index = one node: J^T (ahead - before), in frames.
+/// One index = one node: J^T (ahead - before), in frames. By lanes: hundreds of contacts may act on
+/// one node, that of a rigid body.
 struct NodePushOp {
+  using Sum = PlainSums<3>;
+  static constexpr int lanes = 32;
+
   TouchingNodes of;
   View<const double> ahead, before;  ///< [3 contacts]
   View<double> push;                 ///< out
 
-  TETWARP_HD void operator()(std::int64_t node) const {
-    const auto change = [this](std::int64_t block, int axis) {
+  TETWARP_HD Sum part(std::int64_t node, int lane) const {
+    return of.push_part(node, lane, [this](std::int64_t block, int axis) {
       const std::int64_t place = 3 * std::int64_t{of.rows.contact[block]} + axis;
       return ahead[place] - before[place];
-    };
-    of.push_of(node, change, push.data + 3 * node);
+    });
+  }
+  TETWARP_HD void finish(std::int64_t node, const Sum& sum) const {
+    for (int i = 0; i < 3; ++i) push[3 * node + i] = sum.value[i];
   }
 };
 

@@ -19,13 +19,14 @@ struct TouchingRows {
   View<const std::int32_t> touch_start, touch;        ///< of each row its blocks, ascending
   View<const double> offset;                          ///< w, [3 contacts]
 
-  /// force += J^T (impulse - minus) of all contacts on a row.
+  /// force += J^T (impulse - minus) of every 32nd contact on a row.
   /// @param minus  [3 contacts]
   TETWARP_HD void add_forces(std::int64_t of_row,
+                             int lane,
                              const double* impulse,
                              const double* minus,
                              double* force) const {
-    for (std::int64_t t = touch_start[of_row]; t < touch_start[of_row + 1]; ++t) {
+    for (std::int64_t t = touch_start[of_row] + lane; t < touch_start[of_row + 1]; t += 32) {
       const std::int64_t block = touch[t];
       const std::int64_t first = 3 * std::int64_t{contact[block]};
       const double* const j = jacobian.data + 9 * block;
@@ -37,8 +38,11 @@ struct TouchingRows {
   }
 };
 
-/// One index = one row: b + J^T (r - preload) - A v, in frames.
+/// One index = one row: b + J^T (r - preload) - A v, in frames. By lanes.
 struct RowDefectOp {
+  using Sum = PlainSums<3>;
+  static constexpr int lanes = 32;
+
   CompliantBodies of;
   TouchingRows touching;
   SystemRows rows;
@@ -47,31 +51,47 @@ struct RowDefectOp {
   View<const double> impulse, preload;  ///< [3 contacts]
   View<double> defect;                  ///< out
 
-  TETWARP_HD void operator()(std::int64_t row) const {
+  TETWARP_HD Sum part(std::int64_t row, int lane) const {
     const CompliantBody& own = of.of_row(row);
     const std::int64_t place = own.system_row + row - own.first;
-    double product[3], force[3];
     // Columns of the system are rows of the same coupling island, all of which are in the solve.
     const double* const from = velocity.data + 3 * (own.first - std::int64_t{own.system_row});
-    multiply_blocks(values.data, rows.column.data, rows.start[place], rows.free_end[place], from,
-                    product);
-    for (int i = 0; i < 3; ++i) force[i] = load[3 * place + i] - product[i];
-    touching.add_forces(row, impulse.data, preload.data, force);
+    Sum force;
+    for (std::int64_t k = rows.start[place] + lane; k < rows.free_end[place]; k += lanes) {
+      double product[3];
+      multiply_blocks(values.data, rows.column.data, k, k + 1, from, product);
+      for (int i = 0; i < 3; ++i) force.value[i] -= product[i];
+    }
+    touching.add_forces(row, lane, impulse.data, preload.data, force.value);
+    return force;
+  }
+  TETWARP_HD void finish(std::int64_t row, const Sum& sum) const {
+    const CompliantBody& own = of.of_row(row);
+    const std::int64_t place = own.system_row + row - own.first;
+    double force[3];
+    for (int i = 0; i < 3; ++i) force[i] = load[3 * place + i] + sum.value[i];
     of.to_frame(own, force, defect.data + 3 * row);
   }
 };
 
-/// One index = one row: J^T (after - before), in frames.
+/// One index = one row: J^T (after - before), in frames. By lanes: hundreds of contacts may act on
+/// one row, that of a rigid body.
 struct RowPushOp {
+  using Sum = PlainSums<3>;
+  static constexpr int lanes = 32;
+
   CompliantBodies of;
   TouchingRows touching;
   View<const double> after, before;  ///< [3 contacts]
   View<double> push;                 ///< out
 
-  TETWARP_HD void operator()(std::int64_t row) const {
-    double force[3] = {0, 0, 0};
-    touching.add_forces(row, after.data, before.data, force);
-    of.to_frame(of.of_row(row), force, push.data + 3 * row);
+  TETWARP_HD Sum part(std::int64_t row, int lane) const {
+    Sum force;
+    touching.add_forces(row, lane, after.data, before.data, force.value);
+    return force;
+  }
+  TETWARP_HD void finish(std::int64_t row, const Sum& force) const {
+    of.to_frame(of.of_row(row), force.value, push.data + 3 * row);
   }
 };
 

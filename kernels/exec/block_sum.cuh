@@ -24,11 +24,12 @@ __device__ __forceinline__ Sum exchanged(const Sum& mine, const Exchange& exchan
   return other;
 }
 
-/// Sum over the lanes of a warp by a fixed tree; valid in the first lane.
-template <class Sum>
+/// Sum over groups of successive lanes of a warp by a fixed tree; valid in the first lane of each.
+/// @tparam lanes  of a group: 32, or a smaller power of two
+template <int lanes = 32, class Sum>
 __device__ __forceinline__ Sum warp_sum(Sum mine) {
-  for (unsigned step = 16; step > 0; step /= 2) {
-    mine += exchanged(mine, [=](double word) { return __shfl_down_sync(~0u, word, step); });
+  for (unsigned step = lanes / 2; step > 0; step /= 2) {
+    mine += exchanged(mine, [=](double word) { return __shfl_down_sync(~0u, word, step, lanes); });
   }
   return mine;
 }
@@ -39,10 +40,11 @@ __device__ __forceinline__ Sum shuffled_from_first(const Sum& mine) {
   return exchanged(mine, [](double word) { return __shfl_sync(~0u, word, 0); });
 }
 
-/// Sum over the threads of a block by a fixed tree, returned to every thread.
-/// @param of_warp  scratch in shared memory, shape [sum_warps]
-/// @pre blockDim.x is sum_threads, and all threads of the block call it
-template <class Sum>
+/// Sum over the threads of a block by a fixed tree, returned to every thread. All of them have
+/// evaluated their terms when any of them returns.
+/// @param of_warp  scratch in shared memory, shape [threads / 32]
+/// @pre blockDim.x is `threads`, and all threads of the block call it
+template <int threads = sum_threads, class Sum>
 __device__ __forceinline__ Sum block_sum(Sum mine, Sum* of_warp) {
   const int thread = static_cast<int>(threadIdx.x);
   mine = warp_sum(mine);
@@ -50,7 +52,7 @@ __device__ __forceinline__ Sum block_sum(Sum mine, Sum* of_warp) {
   if (thread % 32 == 0) of_warp[thread / 32] = mine;
   __syncthreads();
   Sum total = of_warp[0];
-  for (int warp = 1; warp < sum_warps; ++warp) total += of_warp[warp];
+  for (int warp = 1; warp < threads / 32; ++warp) total += of_warp[warp];
   return total;
 }
 

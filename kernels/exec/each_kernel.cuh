@@ -1,18 +1,31 @@
 /// @file each_kernel.cuh
-/// The kernels of CudaExec::for_each() and for_each_item(): one index per thread.
+/// The kernels of CudaExec::for_each() and for_each_item(), with one index per thread, and of
+/// for_each_by_lanes().
 #pragma once
 #include <cstdint>
 
 #include "kernels/base/view.hpp"
+#include "kernels/exec/block_sum.cuh"
 #include "kernels/exec/launch.hpp"
 
 namespace tetwarp {
 
-constexpr int each_threads = 256;  ///< threads per block
+constexpr int each_threads = 256;  ///< threads per block, at most
 
-/// Blocks for `count` indices.
-inline dim3 each_blocks(std::int64_t count) {
-  return dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads));
+/// Blocks and their threads.
+struct EachShape {
+  unsigned blocks, threads;
+};
+
+/// The largest blocks of which there are at least as many as multiprocessors, or the smallest
+/// blocks: a few hundred indices with long bodies are then shared by many multiprocessors.
+/// @param count            threads that are needed, at least 1
+/// @param multiprocessors  of the device
+inline EachShape each_shape(std::int64_t count, std::int64_t multiprocessors) {
+  std::int64_t threads = each_threads;
+  const auto blocks = [&] { return (count + threads - 1) / threads; };
+  while (threads > 32 && blocks() < multiprocessors) threads /= 2;
+  return {static_cast<unsigned>(blocks()), static_cast<unsigned>(threads)};
 }
 
 /// Minimum blocks per multiprocessor, which bounds registers per thread: Op::resident_blocks
@@ -26,8 +39,21 @@ constexpr int resident_blocks = [] {
 template <class Op>
 __global__ void __launch_bounds__(each_threads, resident_blocks<Op>)
     each_kernel(std::int64_t count, Op op) {
-  const std::int64_t i = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
+  const std::int64_t i = std::int64_t{blockIdx.x} * blockDim.x + threadIdx.x;
   if (i < count) op(i);
+}
+
+/// Op::lanes lanes per index: calls op.finish(i, sum of op.part(i, lane) over the lanes).
+template <class Op>
+__global__ void __launch_bounds__(each_threads) each_by_lanes_kernel(std::int64_t count, Op op) {
+  const std::int64_t thread = std::int64_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  const std::int64_t i = thread / Op::lanes;
+  const int lane = static_cast<int>(threadIdx.x) % Op::lanes;
+  if ((thread - threadIdx.x % 32) / Op::lanes >= count) return;  // all lanes of the warp
+  typename Op::Sum mine{};
+  if (i < count) mine = op.part(i, lane);
+  mine = warp_sum<Op::lanes>(mine);
+  if (i < count && lane == 0) op.finish(i, mine);
 }
 
 /// One index = one run of one entry.
@@ -80,7 +106,7 @@ __device__ __forceinline__ std::int64_t segment_of(const Offsets& offsets, std::
 template <class Offsets, class Op>
 __global__ void __launch_bounds__(each_threads, resident_blocks<Op>)
     each_item_kernel(Offsets offsets, std::int64_t capacity, Op op) {
-  const std::int64_t item = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
+  const std::int64_t item = std::int64_t{blockIdx.x} * blockDim.x + threadIdx.x;
   const std::int64_t count = min_of(offsets[offsets.size - 1], capacity);
   if (item - threadIdx.x % 32 >= count) return;  // all lanes of the warp
   const std::int64_t segment = segment_of(offsets, min_of(item, count - 1));

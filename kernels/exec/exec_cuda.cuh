@@ -8,6 +8,7 @@
 #include "kernels/base/pair_limit.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/exec/device_copies.cuh"
+#include "kernels/exec/device_limits.cuh"
 #include "kernels/exec/device_list.cuh"
 #include "kernels/exec/each_kernel.cuh"
 #include "kernels/exec/grid_sum.cuh"
@@ -28,8 +29,9 @@ void cuda_sort_pairs(cudaStream_t stream,
                      int cell_bits);
 
 /// Runs stages on one device. All work is enqueued and returns before it has run, unless stated.
-/// Sums have one fixed tree: blocks of sum_threads threads sum runs of sum_run terms, then one
-/// block sums these.
+/// Sums have one fixed tree: blocks of sum_threads threads sum runs of sum_run_of(terms) terms, then
+/// one block sums these. Loops have as many blocks as multiprocessors or more, if their count
+/// allows.
 class CudaExec : public DeviceCopies {
  public:
   template <class T>
@@ -42,10 +44,11 @@ class CudaExec : public DeviceCopies {
   /// @param clocks  off: times() are empty
   /// @pre the device is current
   explicit CudaExec(int device, StageClocks clocks = StageClocks::on)
-      : DeviceCopies(device, clocks) {}
+      : DeviceCopies(device, clocks), multiprocessors_(device_limits(device).multiprocessors) {}
   /// An executor on the streams of another one, which may have other clocks. Its memory for sums
   /// and states is its own.
-  CudaExec(const CudaExec& other, StageClocks clocks) : DeviceCopies(other, clocks) {}
+  CudaExec(const CudaExec& other, StageClocks clocks)
+      : DeviceCopies(other, clocks), multiprocessors_(other.multiprocessors_) {}
 
   /// Sets few bytes to zero, by a kernel, so that it may be part of a graph.
   template <class T>
@@ -56,8 +59,13 @@ class CudaExec : public DeviceCopies {
   /// Calls op(i) for i in [0, count), in any order.
   template <class Op>
   void for_each(const char* label, std::int64_t count, const Op& op) {
-    if (count == 0) return;
-    enqueue(label, each_kernel<Op>, each_blocks(count), each_threads, 0, count, op);
+    if (count > 0) enqueue_each(label, each_kernel<Op>, count, count, op);
+  }
+  /// Calls op.finish(i, sum of op.part(i, lane) over Op::lanes lanes) for i in [0, count), in any
+  /// order; the sum has the tree of summed_by_lanes().
+  template <class Op>
+  void for_each_by_lanes(const char* label, std::int64_t count, const Op& op) {
+    if (count > 0) enqueue_each(label, each_by_lanes_kernel<Op>, Op::lanes * count, count, op);
   }
   template <class Op>
   void for_runs(const char* label, std::int64_t count, const Op& op) {
@@ -72,7 +80,7 @@ class CudaExec : public DeviceCopies {
   /// @param part_start  in memory of the host
   template <class Op>
   void for_each_part(View<const std::int64_t> part_start, const Op& op) {
-    part_graphs_.launch(stream(), part_start, op);
+    part_graphs_.launch(stream(), multiprocessors_, part_start, op);
   }
   /// Drops the recorded graphs; to be called when the arrays they read have moved.
   void forget_parts() { part_graphs_.clear(); }
@@ -85,14 +93,13 @@ class CudaExec : public DeviceCopies {
                      std::int64_t capacity,
                      const Op& op) {
     if (capacity == 0) return;
-    enqueue(label, each_item_kernel<Offsets, Op>, each_blocks(capacity), each_threads, 0, offsets,
-            capacity, op);
+    enqueue_each(label, each_item_kernel<Offsets, Op>, capacity, offsets, capacity, op);
   }
 
   /// Memory for sums of so many terms: launches that are recorded must not take it.
   template <class Sum>
   void reserve_sums(std::int64_t terms) {
-    sums_.reserve(runs_of(terms) * static_cast<std::int64_t>(sizeof(Sum)));
+    sums_.reserve(most_sum_runs_of(terms) * static_cast<std::int64_t>(sizeof(Sum)));
   }
   /// Sum of op(i) for i in [first, last); synchronizes.
   template <class Sum, class Op>
@@ -107,10 +114,10 @@ class CudaExec : public DeviceCopies {
   /// @param out  in memory of the device
   template <class Sum, class Op>
   void sum_to(const char*, std::int64_t first, std::int64_t last, const Op& op, Sum* out) {
-    const std::int64_t runs = runs_of(last - first);
+    const std::int64_t runs = sum_runs_of(last - first);
     reserve_sums<Sum>(last - first);
     const View<Sum> sums = {reinterpret_cast<Sum*>(sums_.view(0).data), runs};
-    if (runs > 0) launch_sums(first, last, sum_run, op, sums);
+    if (runs > 0) launch_sums(first, last, sum_run_of(last - first), op, sums);
     launch_sums(0, runs, runs, ReadySums<Sum>{sums}, View<Sum>{out, 1});
   }
   template <class Sum, class Op>
@@ -178,7 +185,15 @@ class CudaExec : public DeviceCopies {
   }
 
  private:
-  static std::int64_t runs_of(std::int64_t terms) { return (terms + sum_run - 1) / sum_run; }
+  /// Launches a kernel with one thread for each of `count` pieces of work, at least one.
+  template <class... Parameters, class... Args>
+  void enqueue_each(const char* label,
+                    void (*kernel)(Parameters...),
+                    std::int64_t count,
+                    const Args&... args) {
+    const EachShape shape = each_shape(count, multiprocessors_);
+    enqueue(label, kernel, shape.blocks, shape.threads, 0, args...);
+  }
 
   template <class Sum, class Term>
   void launch_sums(std::int64_t first,
@@ -200,6 +215,7 @@ class CudaExec : public DeviceCopies {
     return ticket_.view(1).data;
   }
 
+  std::int64_t multiprocessors_;
   DeviceBuffer<std::byte> scratch_, sums_, total_;
   DeviceBuffer<CellPair> other_pairs_;
   DeviceVector<std::int64_t> list_sums_, list_totals_;  ///< of append()

@@ -9,7 +9,24 @@
 
 namespace tetwarp {
 
-constexpr int sum_run = 1024;  ///< terms per block of sums_kernel
+constexpr std::int64_t sum_run = sum_threads;  ///< terms per block of a sum, at least
+constexpr std::int64_t most_sum_runs = 2048;   ///< one block sums these
+
+/// Terms per block of a sum of `terms` terms: one per thread, unless there would be too many runs.
+TETWARP_HD std::int64_t sum_run_of(std::int64_t terms) {
+  std::int64_t run = sum_run;
+  while (terms > most_sum_runs * run) run *= 2;
+  return run;
+}
+/// Runs of a sum of `terms` terms.
+TETWARP_HD std::int64_t sum_runs_of(std::int64_t terms) {
+  const std::int64_t run = sum_run_of(terms);
+  return (terms + run - 1) / run;
+}
+/// At least the runs of every sum of at most `terms` terms.
+TETWARP_HD std::int64_t most_sum_runs_of(std::int64_t terms) {
+  return min_of((terms + sum_run - 1) / sum_run, most_sum_runs);
+}
 
 /// sums[b] = sum of term over the b-th `run` of [first, last).
 /// Blocks: one per run. Threads: sum_threads. Shared: one sum per warp. Registers: up to 128.

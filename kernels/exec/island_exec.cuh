@@ -20,39 +20,44 @@ struct LargestSum {
 
 /// One thread's terms of the sum of `term` over [begin, end), those of all threads of a block in
 /// turn.
-template <class Sum, class Term>
+template <class Sum, int threads = sum_threads, class Term>
 __device__ __forceinline__ Sum terms_of(std::int64_t begin, std::int64_t end, const Term& term) {
   static_assert(sizeof(Sum) <= sizeof(LargestSum));
   Sum mine{};
-  for (std::int64_t i = begin; i < end; i += sum_threads) mine += term(i);
+  for (std::int64_t i = begin; i < end; i += threads) mine += term(i);
   return mine;
 }
 
-/// A block of sum_threads threads.
-class BlockTeam {
+/// A block. Its sums have a tree of their own for each number of threads.
+/// @tparam threads  of the block, a multiple of 32
+template <int threads>
+class TeamOfBlock {
  public:
-  static constexpr std::size_t shared_bytes = sum_warps * sizeof(LargestSum);
+  static constexpr std::size_t shared_bytes = threads / 32 * sizeof(LargestSum);
   static constexpr std::int64_t steps_per_read = 1;  ///< steps between reads of results
 
   /// @param shared  of the block, [shared_bytes]
-  __device__ explicit BlockTeam(void* shared) : shared_(shared) {}
+  __device__ explicit TeamOfBlock(void* shared) : shared_(shared) {}
 
   /// The thread's number within the team.
   __device__ static std::int64_t first() { return std::int64_t{threadIdx.x}; }
-  __device__ static std::int64_t size() { return sum_threads; }
+  __device__ static std::int64_t size() { return threads; }
   __device__ static void wait() { __syncthreads(); }
 
   template <class Sum, class Term>
   __device__ __forceinline__ Sum sum(std::int64_t begin, std::int64_t end, const Term& term) const {
-    return block_sum(terms_of<Sum>(begin + first(), end, term), static_cast<Sum*>(shared_));
+    return block_sum<threads>(terms_of<Sum, threads>(begin + first(), end, term),
+                              static_cast<Sum*>(shared_));
   }
 
  private:
   void* shared_;
 };
 
-/// A warp. Its sums have the tree of a block: it computes the parts of the block's warps one after
-/// the other.
+using BlockTeam = TeamOfBlock<sum_threads>;
+
+/// A warp. Its sums have the tree of BlockTeam: it computes the parts of the block's warps one
+/// after the other.
 class WarpTeam {
  public:
   static constexpr std::size_t shared_bytes = 0;
@@ -71,6 +76,7 @@ class WarpTeam {
       const Sum mine = warp_sum(terms_of<Sum>(part + first(), end, term));
       part == begin ? total = mine : total += mine;
     }
+    wait();  // shuffles order no memory: the terms were read before anything is written next
     return shuffled_from_first(total);
   }
 };
@@ -84,16 +90,20 @@ class GridTeam {
 
   /// Bytes of memory for the sums of `terms` terms.
   static std::int64_t sum_bytes(std::int64_t terms) {
-    return 2 * runs_of(terms) * static_cast<std::int64_t>(sizeof(LargestSum));
+    return 2 * most_sum_runs_of(terms) * static_cast<std::int64_t>(sizeof(LargestSum));
   }
 
   /// @param sums    in memory of the device, [sum_bytes(most_terms)]
   /// @param shared  of the block, [shared_bytes]
   __device__ GridTeam(void* sums, std::int64_t most_terms, void* shared)
-      : sums_(static_cast<LargestSum*>(sums)), most_runs_(runs_of(most_terms)), shared_(shared) {}
+      : sums_(static_cast<LargestSum*>(sums)),
+        most_runs_(most_sum_runs_of(most_terms)),
+        shared_(shared) {}
 
+  /// Successive warps are in successive blocks, so that few indices occupy many multiprocessors.
   __device__ static std::int64_t first() {
-    return std::int64_t{blockIdx.x} * sum_threads + threadIdx.x;
+    const std::int64_t warp = threadIdx.x / 32;
+    return (warp * gridDim.x + blockIdx.x) * 32 + threadIdx.x % 32;
   }
   __device__ static std::int64_t size() { return std::int64_t{gridDim.x} * sum_threads; }
   __device__ static void wait() { grid_sync(); }
@@ -105,11 +115,11 @@ class GridTeam {
     Sum* const sums = reinterpret_cast<Sum*>(sums_ + (is_second_ ? most_runs_ : 0));
     is_second_ = !is_second_;
     Sum* const of_warp = static_cast<Sum*>(shared_);
-    const std::int64_t runs = runs_of(end - begin);
+    const std::int64_t size = sum_run_of(end - begin), runs = sum_runs_of(end - begin);
     for (std::int64_t run = blockIdx.x; run < runs; run += gridDim.x) {
-      const std::int64_t from = begin + run * sum_run;
+      const std::int64_t from = begin + run * size;
       const Sum total =
-          block_sum(terms_of<Sum>(from + threadIdx.x, min_of(from + sum_run, end), term), of_warp);
+          block_sum(terms_of<Sum>(from + threadIdx.x, min_of(from + size, end), term), of_warp);
       if (threadIdx.x == 0) sums[run] = total;
     }
     grid_sync();
@@ -118,10 +128,6 @@ class GridTeam {
   }
 
  private:
-  TETWARP_HD static std::int64_t runs_of(std::int64_t terms) {
-    return (terms + sum_run - 1) / sum_run;
-  }
-
   LargestSum* sums_;
   std::int64_t most_runs_;
   void* shared_;
@@ -150,6 +156,12 @@ class IslandExec {
   template <class Op>
   __device__ __forceinline__ void for_each(const char*, std::int64_t count, const Op& op) const {
     for (std::int64_t i = first(); i < count; i += Team::size()) op(i);
+    Team::wait();
+  }
+  /// op(32 i + lane) for i in [0, count), by whole warps.
+  template <class Op>
+  __device__ __forceinline__ void for_each_by_warps(std::int64_t count, const Op& op) const {
+    for (std::int64_t i = first(); i < 32 * count; i += Team::size()) op(i);
     Team::wait();
   }
   template <class Op>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <ostream>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -57,6 +58,11 @@ class DeviceCalls {
 /// The calls since the last time this was called.
 inline DeviceCalls take_calls() {
   return DeviceCalls(simt::Device::only().take_calls());
+}
+
+/// The different launches since the last time this was called.
+inline std::set<simt::LaunchShape> take_launches() {
+  return simt::Device::only().take_launches();
 }
 
 /// The bytes that crossed between host and device since the last time this was called.

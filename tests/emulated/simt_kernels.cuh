@@ -100,6 +100,20 @@ __global__ void neighbor_kernel(unsigned* out) {
   out[threadIdx.x] = values[(threadIdx.x + 1) % 32];
 }
 
+/// Each lane sums a value with that of its right neighbor, then overwrites it.
+template <bool has_barrier>
+__global__ void overwrite_kernel(int* out) {
+  __shared__ int values[32];
+  const int lane = static_cast<int>(threadIdx.x);
+  values[lane] = lane;
+  __syncwarp();
+  const int both = values[lane] + values[(lane + 1) % 32];
+  const int last = __shfl_sync(all_lanes, both, 31);
+  if (has_barrier) __syncwarp();
+  values[lane] = last;
+  out[lane] = values[lane] + both;
+}
+
 __global__ void early_exit_kernel() {
   if (threadIdx.x >= 40) return;
   __syncthreads();

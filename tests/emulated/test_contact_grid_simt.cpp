@@ -14,6 +14,7 @@
 #include "tests/support/contact_stages.hpp"
 #include "tests/support/contact_sweeps.hpp"
 
+#include "kernels/contact/grid_island.cuh"
 #include "kernels/exec/exec_cuda.cuh"
 #include "kernels/exec/staged_arrays.cuh"
 
@@ -48,6 +49,27 @@ TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
     EXPECT_EQ(sums.deepest, host.sums.deepest);
     EXPECT_EQ(sums.largest_contact, host.sums.largest_contact);
   });
+}
+
+/// Packings are for a grid from some size on; a chain, whose colors are as many as its contacts, and
+/// many packings side by side are not.
+TEST(ContactGridSimt, GridsSolveFewLargeIslands) {
+  const auto times = [](std::int64_t contacts, std::int64_t colors) {
+    ContactIsland island;
+    island.slot_end = contacts;
+    island.color_end = colors + 1;
+    return sweep_times(island, 850 * contacts);
+  };
+  const auto by_grid = [&](std::int64_t islands, std::int64_t contacts, std::int64_t colors) {
+    return count_by_grid(
+        std::vector<TeamTimes>(static_cast<std::size_t>(islands), times(contacts, colors)), 132);
+  };
+  EXPECT_EQ(by_grid(1, 40, 8), 0U);
+  EXPECT_EQ(by_grid(1, 800, 10), 0U);
+  EXPECT_EQ(by_grid(1, 2000, 10), 1U);
+  EXPECT_EQ(by_grid(1, 2000, 2000), 0U);
+  EXPECT_EQ(by_grid(100, 2000, 10), 0U);
+  EXPECT_EQ(by_grid(1, 100000, 12), 1U);
 }
 
 struct Staged {

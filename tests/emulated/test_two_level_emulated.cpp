@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "host/base/point3.hpp"
 #include "kernels/body/surface_move.hpp"
+#include "kernels/exec/block_sum.cuh"
 #include "tests/emulated/device_calls.hpp"
 #include "tests/simulate/body_models.hpp"
 #include "tests/simulate/mixed_contacts.hpp"
@@ -214,6 +216,35 @@ TEST(TwoLevelEmulated, StepsBeginAnewWhereAnEigenvalueIsMissed) {
   EXPECT_LE(farthest(found.velocity, host.velocity), 1e-9);
   EXPECT_LE(farthest(found.block_impulses, host.block_impulses), 1e-9);
   EXPECT_NEAR(norm(found.block_impulses[2]), 0.1 * 10 * stack_step, 1e-9);
+}
+
+/// Loops have a block for each multiprocessor or blocks of one warp, so that no multiprocessor waits
+/// for another one's long bodies. Sums have one term per thread.
+TEST(TwoLevelEmulated, LaunchesFillADevice) {
+  simt::Device::only().multiprocessors = 132;
+  const HandScene scene = stack_scene(1e6);
+  ContactSystemOptions options = exact(Backend::cuda);
+  options.solver.tolerance = 1e-4;
+  take_launches();
+  const FirstStep step = first_step(scene, options);
+  simt::Device::only().multiprocessors = 4;
+  ASSERT_TRUE(step.solved.outcome.converged);
+  const auto contacts = static_cast<std::int64_t>(scene.touches.size());
+  bool has_pushed = false, has_stepped = false;
+  for (const simt::LaunchShape& launch : take_launches()) {
+    SCOPED_TRACE(launch.kernel);
+    const auto is_of = [&](const char* op) { return launch.kernel.find(op) != std::string::npos; };
+    if (is_of("Sum")) {
+      EXPECT_EQ(launch.threads, sum_threads);
+    } else if (!is_of("scan") && !is_of("GradientArrays")) {
+      EXPECT_TRUE(launch.blocks >= 132 || launch.threads == 32)
+          << launch.blocks << " " << launch.threads;
+    }
+    has_pushed = has_pushed || (is_of("NodePushOp") && launch.blocks > 1);
+    has_stepped =
+        has_stepped || (is_of("ProximalStepOp") && launch.blocks * launch.threads >= 4 * contacts);
+  }
+  EXPECT_TRUE(has_pushed && has_stepped);
 }
 
 /// Nothing of A is copied, nor of J: of contacts their points and laws, of nodes that may move the

@@ -9,15 +9,18 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "tests/emulator/fiber.hpp"
+#include "tests/emulator/race_order.hpp"
 
 namespace tetwarp::simt {
 
@@ -81,14 +84,21 @@ class Block {
       threads_[t]->state = State::ready;
       threads_[t]->fiber.start([this, t, &kernel] { run_thread(t, kernel); });
     }
+    RaceThread::release_own(&begun_);
+    for_each_race([this](const RaceThread& thread) { thread.acquire(&begun_); });
   }
   /// Runs all threads until they have returned or wait for the grid.
   void go_on(const std::function<void(unsigned)>& on_resume) {
-    const unsigned warp_count = (thread_count_ + warp_size - 1) / warp_size;
-    while (!is_done()) {
-      for (const unsigned warp : ordered(warp_count)) run_warp(warp * warp_size, on_resume);
-      if (release_barrier() == State::at_grid) return;
+    {
+      const IgnoredAccesses of_emulation;
+      const unsigned warp_count = (thread_count_ + warp_size - 1) / warp_size;
+      while (!is_done()) {
+        for (const unsigned warp : ordered(warp_count)) run_warp(warp * warp_size, on_resume);
+        if (release_barrier() == State::at_grid) return;
+      }
     }
+    for_each_race([this](const RaceThread& thread) { thread.release(&done_); });
+    RaceThread::acquire_own(&done_);
   }
   /// Whether all threads have returned.
   bool is_done() const {
@@ -98,6 +108,15 @@ class Block {
   /// Lets the threads continue that wait for the grid.
   void release_grid() {
     for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;
+  }
+  /// What all threads have done is before what follows acquire_order() of any block.
+  /// @param at  of the grid
+  void release_order(void* at) const {
+    if (!barrier_lines().note(threads_[0]->line)) return;
+    for_each_race([at](const RaceThread& thread) { thread.release(at); });
+  }
+  void acquire_order(void* at) const {
+    for_each_race([at](const RaceThread& thread) { thread.acquire(at); });
   }
 
   /// Dynamic shared memory, filled with 0xcd when the block starts.
@@ -113,10 +132,13 @@ class Block {
   unsigned lane() const { return running_ % warp_size; }
 
   /// Waits for the lanes of `mask`. @returns those of them whose predicate is true
-  unsigned ballot(unsigned mask, bool predicate, int line) {
+  /// @param orders  whether it also orders the accesses of these lanes to memory
+  unsigned ballot(unsigned mask, bool predicate, int line, bool orders = false) {
+    const IgnoredAccesses of_emulation;
     Thread& self = *threads_[running_];
     self.predicate = predicate;
     self.source_lane = lane();
+    self.orders = orders;
     exchange(mask, line);
     return self.ballot;
   }
@@ -125,9 +147,11 @@ class Block {
   template <class T>
   T shuffle(unsigned mask, T value, unsigned source_lane, int line) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(Value));
+    const IgnoredAccesses of_emulation;
     Thread& self = *threads_[running_];
     std::memcpy(self.sent.data(), &value, sizeof(T));
     self.source_lane = source_lane;
+    self.orders = false;
     exchange(mask, line);
     std::memcpy(&value, self.received.data(), sizeof(T));
     return value;
@@ -144,6 +168,7 @@ class Block {
     unsigned mask = 0;         ///< of the exchange that it waits in
     unsigned source_lane = 0;  ///< lane whose value it reads
     bool predicate = false;
+    bool orders = false;  ///< the exchange orders accesses to memory
     Value sent{};
     unsigned ballot = 0;  ///< results of the exchange
     Value received{};
@@ -172,6 +197,7 @@ class Block {
   }
 
   void wait(State state, int line) {
+    const IgnoredAccesses of_emulation;
     Thread& self = *threads_[running_];
     self.state = state;
     self.line = line;
@@ -210,6 +236,7 @@ class Block {
         member.received = threads_[first + member.source_lane]->sent;
         member.state = State::ready;
       }
+      if (waiting.orders && barrier_lines().note(waiting.line)) order_lanes(first, mask);
       return true;
     }
     return false;
@@ -225,6 +252,22 @@ class Block {
       if (waiting.mask >> l & 1 && !has_arrived) return l;
     }
     return warp_size;
+  }
+
+  template <class Visit>
+  void for_each_race(const Visit& visit) const {
+    if (!has_thread_sanitizer) return;
+    for (unsigned t = 0; t < thread_count_; ++t) visit(threads_[t]->fiber.race());
+  }
+  void order_lanes(unsigned first, unsigned mask) {
+    if (!has_thread_sanitizer) return;
+    char* const at = &of_lanes_[{first, mask}];
+    for (const bool is_release : {true, false}) {
+      for (unsigned lane = 0; lane < warp_size && first + lane < thread_count_; ++lane) {
+        const RaceThread& race = threads_[first + lane]->fiber.race();
+        if (mask >> lane & 1) is_release ? race.release(at) : race.acquire(at);
+      }
+    }
   }
 
   static Block*& chosen() {
@@ -253,6 +296,8 @@ class Block {
       }
     }
     if (first.state == State::at_grid) return State::at_grid;
+    release_order(&at_barrier_);
+    acquire_order(&at_barrier_);
     for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;
     return State::at_barrier;
   }
@@ -280,6 +325,8 @@ class Block {
   std::minstd_rand random_;
   std::vector<std::byte> shared_;
   std::exception_ptr fault_;
+  char begun_ = 0, done_ = 0, at_barrier_ = 0;  ///< addresses where threads are ordered
+  std::map<std::pair<unsigned, unsigned>, char> of_lanes_;  ///< by first thread and mask
 };
 
 }  // namespace tetwarp::simt

@@ -14,6 +14,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -93,6 +94,14 @@ enum class ApiCall : char {
   graph = 'G'    ///< launch of a graph; each item of it is noted as a launch, too
 };
 
+/// A kernel, named by the types of its arguments, and the blocks and threads that it was launched
+/// with.
+struct LaunchShape {
+  std::string kernel;
+  std::int64_t blocks = 0, threads = 0;
+  auto operator<=>(const LaunchShape&) const = default;
+};
+
 /// Bytes that crossed between host and device.
 struct CopiedBytes {
   std::size_t to_device = 0, to_host = 0;
@@ -131,6 +140,15 @@ class Device {
     return std::exchange(calls_, {});
   }
   void note(ApiCall call) { calls_ += static_cast<char>(call); }
+  /// Returns the different launches since the last take_launches(), recorded ones included.
+  std::set<LaunchShape> take_launches() {
+    const std::lock_guard guard(lock);
+    return std::exchange(launches_, {});
+  }
+  void note_launch(const std::type_info& kernel, dim3 grid, dim3 block) {
+    launches_.insert({kernel.name(), std::int64_t{grid.x} * grid.y * grid.z,
+                      std::int64_t{block.x} * block.y * block.z});
+  }
   /// Returns the bytes copied since the last take_copied().
   CopiedBytes take_copied() {
     const std::lock_guard guard(lock);
@@ -231,6 +249,7 @@ class Device {
   Stream default_stream_;
   std::set<const void*> loaded_;
   std::string calls_;
+  std::set<LaunchShape> launches_;
   CopiedBytes copied_;
 };
 
@@ -238,7 +257,7 @@ class Device {
 /// @throws Fault  the stream belongs to another than the current device, or is captured and the
 ///                kernel was not loaded before
 template <class Kernel, class Run>
-void enqueue_kernel(cudaStream_t stream, Kernel kernel, const Run& run) {
+void enqueue_kernel(cudaStream_t stream, Kernel kernel, dim3 grid, dim3 block, const Run& run) {
   if (stream == nullptr) return run();
   Device& device = Device::only();
   const std::lock_guard guard(device.lock);
@@ -252,6 +271,7 @@ void enqueue_kernel(cudaStream_t stream, Kernel kernel, const Run& run) {
   }
   device.load(address);
   device.note(ApiCall::launch);
+  device.note_launch(typeid(kernel), grid, block);
   own.enqueue(run);
   device.run_eager();
 }
@@ -263,7 +283,8 @@ void launch_on(cudaStream_t stream,
                dim3 block,
                std::size_t shared_bytes,
                const Args&... args) {
-  enqueue_kernel(stream, kernel, [=] { launch(kernel, grid, block, shared_bytes, args...); });
+  enqueue_kernel(stream, kernel, grid, block,
+                 [=] { launch(kernel, grid, block, shared_bytes, args...); });
 }
 
 template <class Kernel, class... Args>
@@ -273,7 +294,7 @@ void launch_cooperative_on(cudaStream_t stream,
                            dim3 block,
                            std::size_t shared_bytes,
                            const Args&... args) {
-  enqueue_kernel(stream, kernel,
+  enqueue_kernel(stream, kernel, grid, block,
                  [=] { launch_cooperative(kernel, grid, block, shared_bytes, args...); });
 }
 

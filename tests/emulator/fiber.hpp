@@ -1,7 +1,8 @@
 /// @file fiber.hpp
 /// A coroutine with its own stack: a call that can be suspended and resumed. Only the first switch
-/// to a stack is one of ucontext, which makes a system call; the others are jumps. A program that
-/// includes this file must be compiled without _FORTIFY_SOURCE, which forbids jumps between stacks.
+/// to a stack is one of ucontext, which makes a system call; the others are jumps, unless the thread
+/// sanitizer follows them. A program that includes this file must be compiled without
+/// _FORTIFY_SOURCE, which forbids jumps between stacks.
 #pragma once
 #include <setjmp.h>
 #include <ucontext.h>
@@ -10,6 +11,8 @@
 #include <functional>
 #include <memory>
 #include <utility>
+
+#include "tests/emulator/race_order.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/asan_interface.h>
@@ -50,7 +53,11 @@ class Fiber {
   void resume() {
     resumed = this;
     const Switch to_fiber(stack_.get(), stack_bytes);
-    if (_setjmp(owner_) == 0) {
+    owner_race_ = race_.take_over();
+    if constexpr (has_thread_sanitizer) {
+      is_new_ = false;
+      swapcontext(&owner_context_, &beginning_);
+    } else if (_setjmp(owner_) == 0) {
       if (std::exchange(is_new_, false)) setcontext(&beginning_);
       _longjmp(own_, 1);
     }
@@ -60,9 +67,16 @@ class Fiber {
   /// Called from inside the call: returns control to the caller of resume().
   void suspend() {
     const Switch to_owner(owner_stack_.bottom, owner_stack_.size);
-    if (_setjmp(own_) == 0) _longjmp(owner_, 1);
+    RaceThread::give_back(owner_race_);
+    if constexpr (has_thread_sanitizer) {
+      swapcontext(&beginning_, &owner_context_);
+    } else if (_setjmp(own_) == 0) {
+      _longjmp(owner_, 1);
+    }
     to_owner.came_back(&owner_stack_);
   }
+
+  const RaceThread& race() const { return race_; }
 
  private:
   static constexpr std::size_t stack_bytes = std::size_t{128} * 1024;
@@ -113,7 +127,10 @@ class Fiber {
   std::function<void()> entry_;
   bool is_idle_ = false;  ///< run() waits for the next call
   bool is_new_ = false;   ///< run() has to be entered at its beginning
-  ucontext_t beginning_{};
+  ucontext_t beginning_{};  ///< with the thread sanitizer: where the call was suspended
+  ucontext_t owner_context_{};
+  RaceThread race_;
+  void* owner_race_ = nullptr;
   jmp_buf own_{};
   jmp_buf owner_{};
   StackRange owner_stack_;

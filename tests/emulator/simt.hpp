@@ -4,8 +4,9 @@
 /// Defines for a C++ compiler the CUDA names that kernels here use: indices, shared memory,
 /// barriers, shuffles, votes and integer atomics. Detects results that depend
 /// on the order of threads, barriers that not all threads reach, warp operations that miss a lane
-/// and, with the address sanitizer, accesses out of bounds, also in shared memory. Kernels must not
-/// spin on other threads.
+/// and, with the address sanitizer, accesses out of bounds, also in shared memory. With the thread
+/// sanitizer it detects all races of a run: accesses that no barrier orders, whether results depend
+/// on them or not. Kernels must not spin on other threads.
 #pragma once
 #include <algorithm>
 #include <concepts>
@@ -61,8 +62,9 @@ inline unsigned __ballot_sync(unsigned mask, int predicate, int line = __builtin
   return tetwarp::simt::Block::current().ballot(mask, predicate != 0, line);
 }
 
+/// Of the exchanges of a warp only this one orders accesses to memory.
 inline void __syncwarp(unsigned mask = ~0u, int line = __builtin_LINE()) {
-  tetwarp::simt::Block::current().ballot(mask, false, line);
+  tetwarp::simt::Block::current().ballot(mask, false, line, true);
 }
 
 inline int __any_sync(unsigned mask, int predicate, int line = __builtin_LINE()) {
@@ -203,7 +205,8 @@ void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, cons
   check_launch(grid, block, shared_bytes, shared_limit(reinterpret_cast<const void*>(kernel)));
   const std::int64_t slice = std::int64_t{grid.x} * grid.y;
   const std::int64_t block_count = slice * grid.z;
-  const bool is_parallel = !has_address_sanitizer && block_count >= fewest_parallel_blocks;
+  const bool is_parallel = !has_address_sanitizer && !has_thread_sanitizer &&
+                           block_count >= fewest_parallel_blocks;
   std::exception_ptr fault;
 #pragma omp parallel for schedule(dynamic) if (is_parallel)
   for (std::int64_t b = 0; b < block_count; ++b) {
@@ -251,6 +254,7 @@ void launch_cooperative(
   struct Chosen {
     ~Chosen() { Block::choose(nullptr); }
   } const chosen;
+  const IgnoredAccesses of_emulation;
   for (unsigned waiting = grid.x; waiting > 0;) {
     waiting = 0;
     for (const unsigned b : order) {
@@ -261,6 +265,10 @@ void launch_cooperative(
     }
     if (waiting != 0 && waiting != grid.x) throw Fault("barrier of the grid not reached by all");
     for (const unsigned b : order) {
+      if (waiting > 0) blocks[b]->release_order(&order);
+    }
+    for (const unsigned b : order) {
+      if (waiting > 0) blocks[b]->acquire_order(&order);
       if (waiting > 0) blocks[b]->release_grid();
     }
   }

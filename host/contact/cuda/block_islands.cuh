@@ -23,7 +23,7 @@ class BlockIslands {
 
   /// Sorts the islands by falling size, so that no long one starts last, and copies their ranges to
   /// the device.
-  /// @param numbers  of the islands, each of at most block_contacts contacts
+  /// @param numbers  of the islands
   void set(const ContactStructure& structure, std::vector<std::int64_t> numbers) {
     numbers_ = std::move(numbers);
     const auto contacts = [&](std::int64_t i) {

@@ -31,8 +31,8 @@ struct SkippedVisitsOp {
   }
 };
 
-/// Numbers and unknowns of one problem on a device. Islands that fit one block are solved by one
-/// launch, larger ones one after the other by the whole device.
+/// Numbers and unknowns of one problem on a device. Islands that one block each solves quickly are
+/// solved by one launch, larger ones one after the other by the whole device.
 class IslandRuns {
  public:
   /// @param exec  kept by the caller
@@ -123,15 +123,32 @@ class IslandRuns {
 
   /// Divides the islands into those for one block or warp each and those for the whole device.
   void sort_islands(const ContactStructure& structure) {
-    const auto contacts = [&](std::int64_t i) {
-      return structure.islands[index_of(i)].contact_count();
+    struct Island {
+      std::int64_t number;
+      TeamTimes times;
     };
+    const ContactIndices indices = structure.indices();
+    std::vector<Island> islands;
+    for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
+      const ContactIsland& own = structure.islands[index_of(i)];
+      if (own.is_coupled) continue;
+      const std::int64_t bytes =
+          island_bytes<double>(own, island_arrays(indices, own), indices.is_local);
+      islands.push_back({i, sweep_times(own, bytes)});
+    }
+    std::stable_sort(islands.begin(), islands.end(), [](const Island& a, const Island& b) {
+      return a.times.block > b.times.block;
+    });
+    std::vector<TeamTimes> times;
+    for (const Island& one : islands) times.push_back(one.times);
+    const std::size_t by_grid = count_by_grid(times, limits_.multiprocessors);
     std::vector<std::int64_t> small;
     large_.clear();
-    for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
-      if (structure.islands[index_of(i)].is_coupled) continue;
-      (contacts(i) > block_contacts ? large_ : small).push_back(i);
+    for (std::size_t k = 0; k < islands.size(); ++k) {
+      (k < by_grid ? large_ : small).push_back(islands[k].number);
     }
+    std::sort(large_.begin(), large_.end());
+    std::sort(small.begin(), small.end());
     blocks_.set(structure, std::move(small));
   }
 

@@ -247,7 +247,8 @@ class BodyPipeline {
     if constexpr (!std::is_same_v<T, double>) {
       exec_.for_each(linear_label, values.size, RoundOp{values, exec_.view(solve_.copy)});
     }
-    const GradientOptions limits = {options_.linear_tolerance, options_.max_iterations};
+    const GradientOptions limits = {options_.linear_tolerance, options_.max_iterations,
+                                    options_.progress || options_.clock != nullptr};
     const auto proceed = [&](std::int64_t iterations) {
       outcome.completed =
           outcome.completed && !(options_.progress && !options_.progress(iterations));

@@ -133,23 +133,25 @@ class Steps {
   const ProximalState::Sums& run() {
     CpuExec exec(1);
     for (int step = 0; step < ProximalState::steps_at_once; ++step) {
-      exec.for_each("", static_cast<std::int64_t>(of_.constants.size()),
-                    ProximalStepOp{touching_,
-                                   view(std::as_const(of_.constants)),
-                                   view(std::as_const(of_.majorant)),
-                                   {},
-                                   view(std::as_const(velocity_)),
-                                   &state_,
-                                   step,
-                                   view(ahead_),
-                                   view(impulse_),
-                                   view(past_),
-                                   view(terms_)});
-      exec.for_each("", touching_.bodies.row_of_node.size,
-                    NodePushOp{touching_, view(std::as_const(ahead_)), view(std::as_const(none_)),
-                               view(push_)});
-      exec.for_each("", static_cast<std::int64_t>(velocity_.size()),
-                    NodeMoveOp{touching_.bodies, view(std::as_const(push_)), {}, view(velocity_)});
+      exec.for_each_by_lanes("", static_cast<std::int64_t>(of_.constants.size()),
+                             ProximalStepOp{touching_,
+                                            view(std::as_const(of_.constants)),
+                                            view(std::as_const(of_.majorant)),
+                                            {},
+                                            view(std::as_const(velocity_)),
+                                            &state_,
+                                            step,
+                                            view(ahead_),
+                                            view(impulse_),
+                                            view(past_),
+                                            view(terms_)});
+      const std::int64_t nodes = touching_.bodies.row_of_node.size;
+      exec.for_each_by_lanes("", nodes,
+                             NodePushOp{touching_, view(std::as_const(ahead_)),
+                                        view(std::as_const(none_)), view(push_)});
+      exec.for_each_by_lanes(
+          "", nodes,
+          NodeMoveOp{touching_.bodies, view(std::as_const(push_)), {}, view(velocity_)});
     }
     state_.sums = {};
     for (const ProximalState::Sums& term : terms_) state_.sums += term;

@@ -28,6 +28,10 @@ template <class Op>
 void each(std::int64_t count, const Op& op) {
   CpuExec(1).for_each("", count, op);
 }
+template <class Op>
+void each_by_lanes(std::int64_t count, const Op& op) {
+  CpuExec(1).for_each_by_lanes("", count, op);
+}
 void expect_near(const Vector& found, const Vector& expected, double tolerance = 1e-13) {
   ASSERT_EQ(found.size(), expected.size());
   if (found.size() == 0) return;
@@ -94,7 +98,7 @@ TEST(TwoLevelStages, BodiesMoveByTheirInverses) {
   at_all_sizes([](Stages& s) {
     const Vector push = s.step.vector(3 * s.size), from = s.step.vector(3 * s.size);
     Vector moved = unset(s.size), to = moved;
-    each(3 * s.size, ComplianceOp{s.of, read(push), write(moved)});
+    each_by_lanes(s.size, ComplianceOp{s.of, read(push), write(moved)});
     each(s.size, RowMoveOp{s.of, read(moved), read(from), write(to)});
     expect_near(moved, s.step.inverses * push, 1e-12);
     expect_near(to, from + s.step.rotations * moved);
@@ -110,9 +114,9 @@ TEST(TwoLevelStages, NodesMoveByTheInversesOfTheirRows) {
     const Vector expected =
         s.step.picks * Vector(s.step.inverses * Vector(s.step.picks.transpose() * push));
     Vector velocity = unset(s.nodes);
-    each(3 * s.nodes, NodeMoveOp{s.of, read(push), {}, write(velocity)});
+    each_by_lanes(s.nodes, NodeMoveOp{s.of, read(push), {}, write(velocity)});
     expect_near(velocity, expected, 1e-6);
-    each(3 * s.nodes, NodeMoveOp{s.of, read(push), read(from), write(velocity)});
+    each_by_lanes(s.nodes, NodeMoveOp{s.of, read(push), read(from), write(velocity)});
     expect_near(velocity, from + expected, 1e-6);
 
     const Vector of_rows = s.step.vector(3 * s.size);
@@ -127,7 +131,7 @@ TEST(TwoLevelStages, ContactsPushRowsAndMoveWithThem) {
     const Vector before = s.step.vector(3 * s.size);
     Vector of_contacts = unset(s.size), push = of_contacts, defect = of_contacts;
     each(s.size, TouchVelocityOp{s.touching, read(velocity), write(of_contacts)});
-    each(s.size, RowPushOp{s.of, s.touching, read(after), read(before), write(push)});
+    each_by_lanes(s.size, RowPushOp{s.of, s.touching, read(after), read(before), write(push)});
     expect_near(of_contacts, s.step.jacobian * velocity + s.offset);
     const Vector pushed = s.step.jacobian.transpose() * (after - before);
     expect_near(push, s.step.rotations.transpose() * pushed);
@@ -137,8 +141,9 @@ TEST(TwoLevelStages, ContactsPushRowsAndMoveWithThem) {
     for (std::int32_t row = 0; row < s.size; ++row) {
       of_rows.segment<3>(3 * row) = load.segment<3>(3 * s.step.system_row()[row]);
     }
-    each(s.size, RowDefectOp{s.of, s.touching, s.step.system(), s.step.values(), read(load),
-                             read(velocity), read(after), read(before), write(defect)});
+    each_by_lanes(s.size, RowDefectOp{s.of, s.touching, s.step.system(), s.step.values(),
+                                      read(load), read(velocity), read(after), read(before),
+                                      write(defect)});
     expect_near(defect,
                 s.step.rotations.transpose() * Vector(of_rows + pushed - s.step.a * velocity));
   });
@@ -182,9 +187,9 @@ TEST(TwoLevelStages, PartsPushNodesAndMoveWithThem) {
     Vector diagonal = s.step.vector(3 * s.step.part_count()).cwiseAbs();
     if (diagonal.size() > 0) diagonal[1] = 0;
     Vector push = unset(s.nodes), vector = unset(s.step.part_count());
-    each(s.nodes, PartPushOp{s.contacts, read(of_parts), write(push)});
+    each_by_lanes(s.nodes, PartPushOp{s.contacts, read(of_parts), write(push)});
     expect_near(push, s.step.picks * Vector(s.step.parts.transpose() * of_parts));
-    each(s.nodes, NodePushOp{s.contacts, read(after), read(before), write(push)});
+    each_by_lanes(s.nodes, NodePushOp{s.contacts, read(after), read(before), write(push)});
     const Vector impulses = s.step.sum_parts.transpose() * (after - before);
     expect_near(push, s.step.picks * Vector(s.step.parts.transpose() * impulses));
 
@@ -257,7 +262,8 @@ TEST(TwoLevelStages, ScalesOfBodiesAreEigenvaluesWithinTheirLimits) {
                         ? 0
                         : std::clamp(BodyScaleOp::margin * factor, 1.0, std::max(most, 1.0));
     }
-    each(s.of.bodies.size, BodyScaleOp{s.of, read(push), read(before), read(after), write(scale)});
+    each_by_lanes(s.of.bodies.size,
+                  BodyScaleOp{s.of, read(push), read(before), read(after), write(scale)});
     expect_near(scale, expected);
   });
 }

@@ -90,6 +90,10 @@ class TwoLevelIteration {
   void for_each(std::int64_t count, const Op& op) {
     exec_.for_each(label, count, op);
   }
+  template <class Op>
+  void for_each_by_lanes(std::int64_t count, const Op& op) {
+    exec_.for_each_by_lanes(label, count, op);
+  }
 
   void resize() {
     contact_numbers_ = 3 * (rows().block_start.size - 1);
@@ -126,14 +130,14 @@ class TwoLevelIteration {
 
   /// image = velocity + M^-1 d, d = b + J^T (r - preload) - A velocity; sums d . M^-1 d.
   void step(View<const double> r) {
-    for_each(row_numbers_ / 3, numbers_.defect(velocity(), r, defect_.view()));
+    for_each_by_lanes(row_numbers_ / 3, numbers_.defect(velocity(), r, defect_.view()));
     move(velocity());
     exec_.sum_to(label, 0, row_numbers_, DefectSquareOp{const_view(defect_), const_view(moved_)},
                  &sums_.view().data->defect);
   }
   /// image = from + M^-1 of what is in `defect_`.
   void move(View<const double> from) {
-    for_each(row_numbers_, ComplianceOp{bodies(), const_view(defect_), moved_.view()});
+    for_each_by_lanes(row_numbers_ / 3, ComplianceOp{bodies(), const_view(defect_), moved_.view()});
     for_each(row_numbers_ / 3, RowMoveOp{bodies(), const_view(moved_), from, image_.view()});
   }
   void sum_error(View<const double> r, View<const double> u) {
@@ -178,8 +182,9 @@ class TwoLevelIteration {
       exec_.copy(label, View<const double>(impulse()), stepped_.view());
       outcome.sweeps += step_contacts(control.enough());
       ++outcome.outer_iterations;
-      for_each(row_numbers_ / 3,
-               RowPushOp{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
+      for_each_by_lanes(
+          row_numbers_ / 3,
+          RowPushOp{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
       move(const_view(image_));
       if (control.mixes()) {
         mixer.observe(velocity(), const_view(image_));
@@ -231,14 +236,15 @@ class TwoLevelIteration {
   }
   void step_contacts_once(const ProximalState* state, int step) {
     const TouchingNodes& touching = numbers_.touching();
-    for_each(contact_numbers_ / 3,
-             ProximalStepOp{touching, numbers_.constants(), numbers_.majorant(), switches_,
-                            const_view(node_velocity_), state, step, ahead_.view(), impulse(),
-                            past_.view(), terms_.view()});
-    for_each(push_.view().size / 3,
-             NodePushOp{touching, const_view(ahead_), const_view(stepped_), push_.view()});
-    for_each(push_.view().size, NodeMoveOp{bodies(), const_view(push_), const_view(node_start_),
-                                           node_velocity_.view()});
+    for_each_by_lanes(contact_numbers_ / 3,
+                      ProximalStepOp{touching, numbers_.constants(), numbers_.majorant(), switches_,
+                                     const_view(node_velocity_), state, step, ahead_.view(),
+                                     impulse(), past_.view(), terms_.view()});
+    const std::int64_t nodes = push_.view().size / 3;
+    for_each_by_lanes(
+        nodes, NodePushOp{touching, const_view(ahead_), const_view(stepped_), push_.view()});
+    for_each_by_lanes(nodes, NodeMoveOp{bodies(), const_view(push_), const_view(node_start_),
+                                        node_velocity_.view()});
   }
 
   CudaExec exec_;
