@@ -78,6 +78,35 @@ TEST(CellGroupSimt, TetrahedraOfEverySizeAndShapeHaveTheSameBits) {
   }
 }
 
+/// A grid of 26 voxels, 6^3 cubes of five tetrahedra: cells have many pairs, most of them small.
+template <class Move>
+Scene fine_block(const Move& move) {
+  Scene scene;
+  scene.name = "fine block";
+  scene.mesh = scenes::lattice({6, 6, 6}, {-0.3, -0.3, -0.3}, {25.4, 25.4, 25.4});
+  scene.deformed = move(scene.mesh.rest_positions);
+  scene.source_grid = scene.output_grid = scenes::unit_grid(26, 25, 24);
+  return scene;
+}
+
+TEST(CellGroupSimt, CellsOfManySmallTetrahedraHaveTheSameBits) {
+  const RasterCase what{
+      .own = fine_block([](const std::vector<Point3>& x) { return scenes::waved(x, 1.5, 3); })};
+  RasterBench<float> bench(what);
+  EXPECT_GT(bench.max_pairs_in_a_cell(), 30u);
+  EXPECT_GT(expect_equal_bits(bench, what), 0);
+}
+
+/// Which of two tetrahedra comes first must not depend on the lanes that found them.
+TEST(CellGroupSimt, SmallTetrahedraThatOverlapHaveTheSameBits) {
+  for (const double fold : {7.0, 9.3, 13.0}) {
+    expect_equal_bits({.own = fine_block([&](std::vector<Point3> x) {
+                         for (Point3& p : x) p[0] = fold + std::abs(p[0] - fold) * 0.8;
+                         return x;
+                       })});
+  }
+}
+
 /// Voxels that wait for exact tests may be tested against further tetrahedra.
 TEST(CellGroupSimt, TestsAreCountedAsInBlocksOfOneCell) {
   for (const char* scene : {"overlapping", "aligned", "waved", "slivers_1", "soup"}) {

@@ -90,8 +90,6 @@ struct GroupCell {
   __device__ __forceinline__ ExactTests tests() const {
     return {pairs, job.nodes, job.tets.data, {corner[0], corner[1], corner[2]}};
   }
-  /// Whether all its pairs are numbered, and their maps set with their bounds.
-  __device__ __forceinline__ bool has_few() const { return count <= chunk_pairs; }
   /// Whether one tetrahedron holds the whole cell and no other comes before it.
   __device__ __forceinline__ bool is_single() const { return count == 1 && is_accepted(pairs[0]); }
   __device__ __forceinline__ const TetSetup& setup(int p) const {
@@ -201,14 +199,14 @@ __device__ __forceinline__ void note_unsure(
 
 /// The pair that a lane works on: one for all lanes of a warp, or one for each half.
 struct PairOfLane {
-  int p;     ///< place in the cell's part of the list
-  int lane;  ///< among those that work on it
+  int p;         ///< place in the cell's part of the list
+  int lane;      ///< among those that work on it
+  bool is_half;  ///< each half of the warp has a pair of its own
 };
 
 /// Gives voxels without an owner that lie within the tetrahedron of a pair to it, in up to `count`
 /// rows of its box per lane. Called by all lanes of a warp.
-/// @tparam is_half  each half of the warp has a pair of its own
-template <int count, bool is_half, class T>
+template <int count, class T>
 __device__ __forceinline__ void give_rows(const GroupCell<T>& cell,
                                           const PairOfLane& of,
                                           OwnerSearch& search) {
@@ -236,8 +234,8 @@ __device__ __forceinline__ void give_rows(const GroupCell<T>& cell,
     some_unsure |= unsure[n];
     const std::uint32_t change =
         (static_cast<std::uint32_t>(__builtin_popcount(open)) << tests_shift) - sure[n];
-    if constexpr (is_half) {
-      __syncwarp();  // the other half reads the row, too
+    if constexpr (count == 1) {
+      __syncwarp();  // the other half may read the row, too
       if (open != 0) is_twice = (sure[n] & ~atomicAdd(row, change)) != 0;
     } else {
       if (open != 0) *row += change;
@@ -245,24 +243,20 @@ __device__ __forceinline__ void give_rows(const GroupCell<T>& cell,
   }
   const unsigned any = __ballot_sync(whole_warp, some != 0);
   if (any == 0) return;
-  constexpr unsigned low = is_half ? 0xffffu : whole_warp;
+  const unsigned low = of.is_half ? 0xffffu : whole_warp;
   const int in_low = (any & low) != 0 ? 1 : 0, in_high = (any & ~low) != 0 ? 1 : 0;
-  const bool is_high = is_half && lane_of() >= 16;
-  int number = search.numbers + 1 + (is_high ? in_low : 0);
-  if (cell.has_few()) {
-    number = of.p + 1;
-  } else {
-    if (of.lane == 0 && (is_high ? in_high : in_low) != 0) {
-      state.pairs[number] = static_cast<std::uint8_t>(of.p);
-    }
-    search.numbers += in_low + in_high;
+  const bool is_high = of.is_half && lane_of() >= 16;
+  const int number = search.numbers + 1 + (is_high ? in_low : 0);
+  if (of.lane == 0 && (is_high ? in_high : in_low) != 0) {
+    state.pairs[number] = static_cast<std::uint8_t>(of.p);
   }
+  search.numbers += in_low + in_high;
   for (int n = 0; n < count; ++n) {
     if (sure[n] != 0) give(sure[n], number, state.row(j[n], k[n]));
   }
   if (!__any_sync(whole_warp, some_unsure != 0 || is_twice)) return;
   // Two tetrahedra overlap: which of them comes first is not known here.
-  if (is_half && __any_sync(whole_warp, is_twice)) search.is_plain = false;
+  if (__any_sync(whole_warp, is_twice)) search.is_plain = false;
   for (int n = 0; n < count; ++n) {
     note_unsure(search, cell_edge * k[n] + j[n], unsure[n], number);
   }
@@ -271,8 +265,11 @@ __device__ __forceinline__ void give_rows(const GroupCell<T>& cell,
 /// Gives what is left of a cell to pair p, which holds it whole. Called by all lanes of a warp.
 template <class T>
 __device__ __forceinline__ void give_rest(const GroupCell<T>& cell, int p, OwnerSearch& search) {
-  const int number = cell.has_few() ? p + 1 : ++search.numbers;
+  const int number = ++search.numbers;
   if (lane_of() == 0) cell.state.pairs[number] = static_cast<std::uint8_t>(p);
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1
+#endif
   for (int r = lane_of(); r < cell_rows; r += 32) {
     give(cell.state.rows[r] & whole_row, number,
          cell.state.row(r & (cell_edge - 1), r >> cell_shift));
@@ -332,16 +329,10 @@ __device__ __forceinline__ void set_map(
 
 /// Sets bounds and heads of the pairs from `first` on, four lanes per pair. Called by all lanes of
 /// a warp.
-/// @param maps   of cells with few pairs; out, after one that voxels without an owner use
-/// @param found  changed by these maps
-template <class Sample, class T>
-__device__ __forceinline__ void set_bounds(const GroupCell<T>& cell,
-                                           int first,
-                                           PairMap* maps,
-                                           MapClass& found) {
+template <class T>
+__device__ __forceinline__ void set_bounds(const GroupCell<T>& cell, int first) {
   const int part = lane_of() & (pair_parts - 1), slot = lane_of() / pair_parts;
   const int p = first + slot, last = cell.count - 1;
-  const bool is_wanted = p <= last;
   const TetSetup& tet = cell.setup(min_of(p, last));
   bool is_cut;
   const RowBound bound = row_bound(tet, part, cell.corner, is_cut);
@@ -354,34 +345,36 @@ __device__ __forceinline__ void set_bounds(const GroupCell<T>& cell,
     const int rank = __popc((is_below ? below : above) & ((1u << part) - 1));
     cell.state.bounds[slot][is_below ? rank : pair_parts - 1 - rank] = bound;
   }
-  if (part == 0 && is_wanted) {
+  if (part == 0 && p <= last) {
     cell.state.heads[slot] = pair_head(tet, cell.corner) |
                              (is_accepted(cell.pairs[p]) ? accepted_cell : 0u) |
                              static_cast<unsigned>(__popc(below)) << below_bits |
                              static_cast<unsigned>(__popc(above)) << above_bits;
-    if (cell.has_few()) cell.state.pairs[p + 1] = static_cast<std::uint8_t>(p);
   }
-  if (cell.has_few()) set_map<Sample>(cell, min_of(p, last), is_wanted, maps[slot + 1], found);
 }
 
 /// Finds the owners of the voxels of a cell. Pairs come one after the other, small ones two at a
 /// time; for each the lanes take the rows of its box. Called by all lanes of a warp.
-template <class Sample, class T>
-__device__ __forceinline__ void find_owners(const GroupCell<T>& cell,
-                                            PairMap* maps,
-                                            OwnerSearch& search,
-                                            MapClass& found) {
+template <class T>
+__device__ __forceinline__ void find_owners(const GroupCell<T>& cell, OwnerSearch& search) {
   CellState& state = cell.state;
   const bool is_single = cell.is_single();
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1
+#endif
   for (int r = lane_of(); r < cell_rows; r += 32) {
     state.rows[r] = is_single ? 0 : row_within(cell.job.frame, cell.corner, r);
     std::uint32_t* const owners = state.row(r & (cell_edge - 1), r >> cell_shift);
     owners[0] = owners[1] = is_single ? 0x01010101u : 0;
   }
-  if (is_single) return set_map<Sample>(cell, 0, lane_of() < pair_parts, maps[1], found);
+  if (is_single) {
+    if (lane_of() == 0) state.pairs[1] = 0;
+    search.numbers = 1;
+    return;
+  }
   for (int first = 0; first < cell.count; first += chunk_pairs) {
     __syncwarp();
-    set_bounds<Sample>(cell, first, maps, found);
+    set_bounds(cell, first);
     const int past = min_of(first + chunk_pairs, cell.count);
     const auto rows_of = [&](int p) {
       if (p >= past) return cell_rows;
@@ -394,12 +387,12 @@ __device__ __forceinline__ void find_owners(const GroupCell<T>& cell,
       if (rows > cell_rows) {
         give_rest(cell, p, search);
       } else if (rows > 32) {
-        give_rows<2, false>(cell, {p, lane_of()}, search);
-      } else if (rows > 16 || rows_of(p + 1) > 16) {
-        give_rows<1, false>(cell, {p, lane_of()}, search);
+        give_rows<2>(cell, {p, lane_of(), false}, search);
       } else {
-        give_rows<1, true>(cell, {p + lane_of() / 16, lane_of() % 16}, search);
-        ++p;
+        const bool is_half = rows <= 16 && rows_of(p + 1) <= 16;
+        const int lanes = is_half ? 16 : 32, second = lane_of() / lanes;
+        give_rows<1>(cell, {p + second, lane_of() - lanes * second, is_half}, search);
+        p += is_half ? 1 : 0;
       }
     }
     if (search.waiting >= (past < cell.count ? 32 : 1)) {
@@ -433,15 +426,12 @@ __device__ __forceinline__ CellClass prepare(const GroupCell<T>& cell,
                                              int capacity,
                                              PairMap* maps,
                                              int& exact_tests) {
-  if (cell.has_few() && cell.count > capacity) return CellClass::general;
-  const int used = cell.has_few() ? chunk_pairs + 1 : 0;  // maps; the others come afterwards
-  OwnerSearch search = {reinterpret_cast<std::uint32_t*>(maps + used),
-                        max_of(words_of(capacity - used), 0)};
-  MapClass found;
-  find_owners<Sample>(cell, maps, search, found);
+  OwnerSearch search = {reinterpret_cast<std::uint32_t*>(maps), words_of(capacity)};
+  find_owners(cell, search);
   exact_tests = search.exact_tests;
   if (!search.is_plain || search.numbers > capacity) return CellClass::general;
   __syncwarp();
+  MapClass found;
   set_maps<Sample>(cell, search.numbers, maps, found);
   if (lane_of() == 0) {
     PairMap none = {};
@@ -466,6 +456,9 @@ __device__ __forceinline__ void count_cell(const GroupCell<T>& cell,
                                            int exact_tests) {
   const RasterJob<T>& job = cell.job;
   int covered = 0, inside_tests = 0;
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1
+#endif
   for (int r = lane_of(); r < cell_rows; r += 32) {
     const std::uint32_t row = cell.state.rows[r];
     covered += __popc(row_within(job.frame, cell.corner, r) & ~row);
@@ -584,6 +577,9 @@ __device__ __forceinline__ void store_owners(const RasterJob<T>& job,
                                              const CellState& state,
                                              int i,
                                              int j) {
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1
+#endif
   for (int k = 0; k < cell_edge; ++k) {
     if (!column.is_stored(k)) continue;
     const std::int64_t at = column.first + k * column.slice;
@@ -598,10 +594,16 @@ template <class T>
 __device__ __forceinline__ void store_background(const RasterJob<T>& job,
                                                  const GroupColumn& column) {
   T* const out = kept(job.volume + column.first);
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1
+#endif
   for (int k = 0; k < cell_edge; ++k) {
     if (column.is_stored(k)) out[k * column.slice] = job.background;
   }
   if (job.mask == nullptr && job.tet == nullptr) return;
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1
+#endif
   for (int k = 0; k < cell_edge; ++k) {
     if (!column.is_stored(k)) continue;
     if (job.mask != nullptr) job.mask[column.first + k * column.slice] = 0;
