@@ -60,9 +60,9 @@ class ResidentJob {
   Warper warper_;
 };
 
-/// Whether samples are those of the cpu, but for fused multiply-add: it moves a position by less than
-/// 170 u (u = 2^-24), and neighbors along each axis differ by at most the range of the samples; 4 u
-/// for the blends. An integer may be rounded the other way.
+/// Whether samples are those of the cpu, but for fused multiply-add: it moves a position by less
+/// than 170 u (u = 2^-24), and neighbors along each axis differ by at most the range of the
+/// samples; 4 u for the blends. An integer may be rounded the other way.
 template <class T>
 bool agree(const std::vector<std::byte>& output, const WarpJob& cpu) {
   std::vector<T> found(output.size() / sizeof(T)), wanted(found.size());

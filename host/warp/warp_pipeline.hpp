@@ -228,8 +228,8 @@ class WarpPipeline : public WarpBackend {
         cell_work(exec_, work);
         overlap(s, work.job, part);
       } else {
-        cell_raster_.run(exec_, work, has_groups,
-                         s == 0 ? &pairs_.counters()->lists : nullptr, part);
+        cell_raster_.run(exec_, work, has_groups, s == 0 ? &pairs_.counters()->lists : nullptr,
+                         part);
       }
       if (totals_.are_requested()) {
         totals_.run(s, number_view(job.source.data), number_view(job.volume), pairs_);

@@ -45,13 +45,12 @@ class CellRaster<CudaExec> {
 
  private:
   /// Maps of a cell that have room: one and a half times the mean number of pairs; at least enough
-  /// for a node of the mesh and all tetrahedra around it, at most what leaves a multiprocessor eight
-  /// blocks.
+  /// for a node of the mesh and all tetrahedra around it, at most what leaves a multiprocessor
+  /// eight blocks.
   static int capacity(const RasterGeometry& job) {
     constexpr std::int64_t least = 39, most = 63;
     const std::int64_t pairs = job.usual_pairs > 0 ? job.usual_pairs : job.pairs.size;
-    return static_cast<int>(
-        min_of(max_of(3 * pairs / (2 * job.frame.cell_count()), least), most));
+    return static_cast<int>(min_of(max_of(3 * pairs / (2 * job.frame.cell_count()), least), most));
   }
 
   template <class T>

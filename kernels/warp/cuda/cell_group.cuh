@@ -82,9 +82,9 @@ struct ExactTests {
 template <class T>
 struct GroupCell {
   const RasterJob<T>& job;
-  int corner[3];           ///< its first voxel [frame]
-  const CellPair* pairs;   ///< its part of the list
-  int count;               ///< pairs in it
+  int corner[3];          ///< its first voxel [frame]
+  const CellPair* pairs;  ///< its part of the list
+  int count;              ///< pairs in it
   CellState& state;
 
   __device__ __forceinline__ ExactTests tests() const {
@@ -145,9 +145,9 @@ TETWARP_HD void cut_spans(
 /// Decides unsure voxels, in their order: a voxel that is inside belongs to its pair unless one
 /// before it has it. Called by all lanes of a warp.
 __device__ __noinline__ inline void decide(CellState& state,
-                            ExactTests tests,
-                            const std::uint32_t* unsure,
-                            int count) {
+                                           ExactTests tests,
+                                           const std::uint32_t* unsure,
+                                           int count) {
   for (int first = 0; first < count; first += 32) {
     __syncwarp();
     const bool is_wanted = first + lane_of() < count;
@@ -183,8 +183,10 @@ struct OwnerSearch {
 
 /// Notes the voxels of row r that float32 leaves open. Called by all lanes of a warp.
 /// @param number  of the pair
-__device__ __forceinline__ void note_unsure(
-    OwnerSearch& search, int r, RowBits voxels, int number) {
+__device__ __forceinline__ void note_unsure(OwnerSearch& search,
+                                            int r,
+                                            RowBits voxels,
+                                            int number) {
   for (;;) {
     const unsigned some = __ballot_sync(whole_warp, voxels != 0);
     if (some == 0) return;
@@ -312,8 +314,8 @@ __device__ __forceinline__ void set_map(
   const bool is_good = is_blended(job, tet) && fabs(relative) < most_whole;
   const int whole = is_good ? static_cast<int>(relative) : 0;
   found.is_plain = found.is_plain && is_good;
-  found.is_rim = found.is_rim ||
-                 !maps_inside(job.source.origin[row], job.source.dims[row], start, linear);
+  found.is_rim =
+      found.is_rim || !maps_inside(job.source.origin[row], job.source.dims[row], start, linear);
   int from[3];
   for (int r = 0; r < 3; ++r) from[r] = __shfl_sync(whole_warp, whole, r, pair_parts);
   if (!is_wanted) return;
@@ -422,10 +424,8 @@ __device__ __forceinline__ void set_maps(const GroupCell<T>& cell,
 /// @param maps         room for `capacity` after one that voxels without an owner use; out
 /// @param exact_tests  out, their number
 template <class Sample, class T>
-__device__ __forceinline__ CellClass prepare(const GroupCell<T>& cell,
-                                             int capacity,
-                                             PairMap* maps,
-                                             int& exact_tests) {
+__device__ __forceinline__ CellClass
+prepare(const GroupCell<T>& cell, int capacity, PairMap* maps, int& exact_tests) {
   OwnerSearch search = {reinterpret_cast<std::uint32_t*>(maps), words_of(capacity)};
   find_owners(cell, search);
   exact_tests = search.exact_tests;
