@@ -158,6 +158,7 @@ __device__ __noinline__ inline void decide(CellState& state,
     const int j = r & (cell_edge - 1), k = r >> cell_shift;
     bool is_inside = is_wanted && tests.is_inside(state, number, i, j, k);
     for (;;) {  // the voxels of one pair at a time, all different
+      __syncwarp();
       const unsigned left = __ballot_sync(whole_warp, is_inside);
       if (left == 0) break;
       const int next = __shfl_sync(whole_warp, number, __ffs(static_cast<int>(left)) - 1);
