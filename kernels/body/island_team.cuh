@@ -54,11 +54,13 @@ __global__ void __launch_bounds__(threads, 512 / threads)
 /// @param sums  [GridTeam::sum_bytes(rows of the island)]
 /// @param end   out, [1]
 template <class T>
-__global__ void __launch_bounds__(sum_threads, 4) island_cg_grid_kernel(
-    GradientArrays<T> arrays, IslandRows rows, GradientOptions options, void* sums,
-    View<GradientEnd> end) {
-  IslandExec<GridTeam> exec(nullptr, GridTeam(sums, rows.end - rows.begin,
-                                              dynamic_shared<unsigned char>()));
+__global__ void __launch_bounds__(sum_threads, 4) island_cg_grid_kernel(GradientArrays<T> arrays,
+                                                                        IslandRows rows,
+                                                                        GradientOptions options,
+                                                                        void* sums,
+                                                                        View<GradientEnd> end) {
+  IslandExec<GridTeam> exec(nullptr,
+                            GridTeam(sums, rows.end - rows.begin, dynamic_shared<unsigned char>()));
   GradientScalars scalars;
   const GradientEnd own =
       island_cg(exec, arrays, rows.begin, rows.end, options, &scalars, AlwaysProceed{});

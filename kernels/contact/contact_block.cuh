@@ -20,8 +20,8 @@
 namespace tetwarp {
 
 constexpr int island_threads = sum_threads;
-constexpr int island_blocks = 2;               ///< resident per multiprocessor: 255 registers
-constexpr std::int64_t warp_contacts = 32;     ///< larger islands use a block
+constexpr int island_blocks = 2;            ///< resident per multiprocessor: 255 registers
+constexpr std::int64_t warp_contacts = 32;  ///< larger islands use a block
 
 /// An island to solve, and its stop criterion.
 struct IslandTask {

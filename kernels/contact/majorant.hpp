@@ -250,8 +250,8 @@ void set_majorants(Exec& exec, const TouchingNodes& touching, const MajorantArra
   exec.for_each(label, contacts, OwnBlockOp{touching, to.constants, to.diagonal, to.vector});
   for (int n = 0;; ++n) {
     exec.for_each_by_lanes(label, nodes, PartPushOp{touching, to.vector, to.push});
-    exec.for_each_by_lanes(
-        label, nodes, NodeMoveOp{bodies, to.push, {}, n < power_steps ? to.before : to.after});
+    exec.for_each_by_lanes(label, nodes,
+                           NodeMoveOp{bodies, to.push, {}, n < power_steps ? to.before : to.after});
     if (n == power_steps) break;
     exec.for_each(label, touching.part_body.size,
                   PartVectorOp{touching, to.before, to.diagonal, to.vector});

@@ -29,8 +29,8 @@ void cuda_sort_pairs(cudaStream_t stream,
                      int cell_bits);
 
 /// Runs stages on one device. All work is enqueued and returns before it has run, unless stated.
-/// Sums have one fixed tree: blocks of sum_threads threads sum runs of sum_run_of(terms) terms, then
-/// one block sums these. Loops have as many blocks as multiprocessors or more, if their count
+/// Sums have one fixed tree: blocks of sum_threads threads sum runs of sum_run_of(terms) terms,
+/// then one block sums these. Loops have as many blocks as multiprocessors or more, if their count
 /// allows.
 class CudaExec : public DeviceCopies {
  public:

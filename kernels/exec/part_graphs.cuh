@@ -66,8 +66,8 @@ class PartGraphs {
       return known.part_start == part_start && recorded != nullptr && *recorded == op;
     });
     if (entry == entries_.end()) {
-      entries_.push_back({part_start, op,
-                          std::make_unique<PartGraph>(stream, multiprocessors, part_start, op)});
+      entries_.push_back(
+          {part_start, op, std::make_unique<PartGraph>(stream, multiprocessors, part_start, op)});
       entry = entries_.end() - 1;
     }
     entry->graph->launch_on(stream);

@@ -23,8 +23,7 @@ __attribute__((visibility("default"), no_sanitize("thread"))) void __tsan_on_rep
   tetwarp::simt::barrier_lines().without_order = 0;
 }
 /// Tests take what they expect, and the listener of the program refuses the rest.
-__attribute__((visibility("default"), no_sanitize("thread"))) const char*
-__tsan_default_options() {
+__attribute__((visibility("default"), no_sanitize("thread"))) const char* __tsan_default_options() {
   return "exitcode=0:suppress_equal_stacks=0:suppress_equal_addresses=0:history_size=4";
 }
 }

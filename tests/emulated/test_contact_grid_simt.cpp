@@ -51,8 +51,8 @@ TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
   });
 }
 
-/// Packings are for a grid from some size on; a chain, whose colors are as many as its contacts, and
-/// many packings side by side are not.
+/// Packings are for a grid from some size on; a chain, whose colors are as many as its contacts,
+/// and many packings side by side are not.
 TEST(ContactGridSimt, GridsSolveFewLargeIslands) {
   const auto times = [](std::int64_t contacts, std::int64_t colors) {
     ContactIsland island;

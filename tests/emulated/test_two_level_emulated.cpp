@@ -218,8 +218,8 @@ TEST(TwoLevelEmulated, StepsBeginAnewWhereAnEigenvalueIsMissed) {
   EXPECT_NEAR(norm(found.block_impulses[2]), 0.1 * 10 * stack_step, 1e-9);
 }
 
-/// Loops have a block for each multiprocessor or blocks of one warp, so that no multiprocessor waits
-/// for another one's long bodies. Sums have one term per thread.
+/// Loops have a block for each multiprocessor or blocks of one warp, so that no multiprocessor
+/// waits for another one's long bodies. Sums have one term per thread.
 TEST(TwoLevelEmulated, LaunchesFillADevice) {
   simt::Device::only().multiprocessors = 132;
   const HandScene scene = stack_scene(1e6);

@@ -325,7 +325,7 @@ class Block {
   std::minstd_rand random_;
   std::vector<std::byte> shared_;
   std::exception_ptr fault_;
-  char begun_ = 0, done_ = 0, at_barrier_ = 0;  ///< addresses where threads are ordered
+  char begun_ = 0, done_ = 0, at_barrier_ = 0;              ///< addresses where threads are ordered
   std::map<std::pair<unsigned, unsigned>, char> of_lanes_;  ///< by first thread and mask
 };
 

@@ -1,7 +1,7 @@
 /// @file fiber.hpp
 /// A coroutine with its own stack: a call that can be suspended and resumed. Only the first switch
-/// to a stack is one of ucontext, which makes a system call; the others are jumps, unless the thread
-/// sanitizer follows them. A program that includes this file must be compiled without
+/// to a stack is one of ucontext, which makes a system call; the others are jumps, unless the
+/// thread sanitizer follows them. A program that includes this file must be compiled without
 /// _FORTIFY_SOURCE, which forbids jumps between stacks.
 #pragma once
 #include <setjmp.h>
@@ -76,7 +76,9 @@ class Fiber {
     to_owner.came_back(&owner_stack_);
   }
 
-  const RaceThread& race() const { return race_; }
+  const RaceThread& race() const {
+    return race_;
+  }
 
  private:
   static constexpr std::size_t stack_bytes = std::size_t{128} * 1024;
@@ -125,8 +127,8 @@ class Fiber {
 
   std::unique_ptr<std::byte[]> stack_;
   std::function<void()> entry_;
-  bool is_idle_ = false;  ///< run() waits for the next call
-  bool is_new_ = false;   ///< run() has to be entered at its beginning
+  bool is_idle_ = false;    ///< run() waits for the next call
+  bool is_new_ = false;     ///< run() has to be entered at its beginning
   ucontext_t beginning_{};  ///< with the thread sanitizer: where the call was suspended
   ucontext_t owner_context_{};
   RaceThread race_;

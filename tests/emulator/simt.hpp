@@ -205,8 +205,8 @@ void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, cons
   check_launch(grid, block, shared_bytes, shared_limit(reinterpret_cast<const void*>(kernel)));
   const std::int64_t slice = std::int64_t{grid.x} * grid.y;
   const std::int64_t block_count = slice * grid.z;
-  const bool is_parallel = !has_address_sanitizer && !has_thread_sanitizer &&
-                           block_count >= fewest_parallel_blocks;
+  const bool is_parallel =
+      !has_address_sanitizer && !has_thread_sanitizer && block_count >= fewest_parallel_blocks;
   std::exception_ptr fault;
 #pragma omp parallel for schedule(dynamic) if (is_parallel)
   for (std::int64_t b = 0; b < block_count; ++b) {

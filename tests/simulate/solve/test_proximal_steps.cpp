@@ -150,8 +150,7 @@ class Steps {
                              NodePushOp{touching_, view(std::as_const(ahead_)),
                                         view(std::as_const(none_)), view(push_)});
       exec.for_each_by_lanes(
-          "", nodes,
-          NodeMoveOp{touching_.bodies, view(std::as_const(push_)), {}, view(velocity_)});
+          "", nodes, NodeMoveOp{touching_.bodies, view(std::as_const(push_)), {}, view(velocity_)});
     }
     state_.sums = {};
     for (const ProximalState::Sums& term : terms_) state_.sums += term;

@@ -141,9 +141,9 @@ TEST(TwoLevelStages, ContactsPushRowsAndMoveWithThem) {
     for (std::int32_t row = 0; row < s.size; ++row) {
       of_rows.segment<3>(3 * row) = load.segment<3>(3 * s.step.system_row()[row]);
     }
-    each_by_lanes(s.size, RowDefectOp{s.of, s.touching, s.step.system(), s.step.values(),
-                                      read(load), read(velocity), read(after), read(before),
-                                      write(defect)});
+    each_by_lanes(s.size,
+                  RowDefectOp{s.of, s.touching, s.step.system(), s.step.values(), read(load),
+                              read(velocity), read(after), read(before), write(defect)});
     expect_near(defect,
                 s.step.rotations.transpose() * Vector(of_rows + pushed - s.step.a * velocity));
   });

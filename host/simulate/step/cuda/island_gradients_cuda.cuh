@@ -61,16 +61,14 @@ class IslandGradients<CudaExec> {
                      [&](const IslandRows& a, const IslandRows& b) { return size(a) > size(b); });
     std::vector<TeamTimes> times;
     for (const IslandRows& island : islands) times.push_back(iteration_times(island));
-    const auto first_small =
-        islands.begin() +
-        static_cast<std::ptrdiff_t>(count_by_grid(times, limits_.multiprocessors));
+    const auto first_small = islands.begin() + static_cast<std::ptrdiff_t>(
+                                                   count_by_grid(times, limits_.multiprocessors));
     large_.assign(islands.begin(), first_small);
     islands.erase(islands.begin(), first_small);
-    narrow_begin_ = std::find_if(islands.begin(), islands.end(),
-                                 [&](const IslandRows& island) {
-                                   return size(island) <= narrow_threads;
-                                 }) -
-                    islands.begin();
+    narrow_begin_ =
+        std::find_if(islands.begin(), islands.end(),
+                     [&](const IslandRows& island) { return size(island) <= narrow_threads; }) -
+        islands.begin();
     exec_.put(islands, small_);
     const auto count = static_cast<std::int64_t>(large_.size()) + small_.view().size;
     ends_.resize(count);

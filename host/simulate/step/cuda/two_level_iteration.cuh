@@ -182,9 +182,8 @@ class TwoLevelIteration {
       exec_.copy(label, View<const double>(impulse()), stepped_.view());
       outcome.sweeps += step_contacts(control.enough());
       ++outcome.outer_iterations;
-      for_each_by_lanes(
-          row_numbers_ / 3,
-          RowPushOp{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
+      for_each_by_lanes(row_numbers_ / 3, RowPushOp{bodies(), rows(), impulse(),
+                                                    const_view(stepped_), defect_.view()});
       move(const_view(image_));
       if (control.mixes()) {
         mixer.observe(velocity(), const_view(image_));
@@ -241,8 +240,8 @@ class TwoLevelIteration {
                                      const_view(node_velocity_), state, step, ahead_.view(),
                                      impulse(), past_.view(), terms_.view()});
     const std::int64_t nodes = push_.view().size / 3;
-    for_each_by_lanes(
-        nodes, NodePushOp{touching, const_view(ahead_), const_view(stepped_), push_.view()});
+    for_each_by_lanes(nodes,
+                      NodePushOp{touching, const_view(ahead_), const_view(stepped_), push_.view()});
     for_each_by_lanes(nodes, NodeMoveOp{bodies(), const_view(push_), const_view(node_start_),
                                         node_velocity_.view()});
   }
