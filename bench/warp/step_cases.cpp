@@ -153,7 +153,7 @@ std::string place_of(Backend backend, int threads) {
 
 Protocol protocol_for(Backend backend, int threads, double seconds) {
   Protocol protocol{.busy_threads = backend == Backend::cpu ? static_cast<double>(threads) : 0.0};
-  if (seconds > 1) protocol.repetitions = protocol.attempts = 3;
+  if (seconds > 1) protocol.repetitions = protocol.attempts = seconds > 10 ? 1 : 3;
   return protocol;
 }
 

@@ -51,7 +51,8 @@ struct Selection {
 std::string place_of(Backend backend, int threads);
 
 /// Repetitions on cpu count only if they had nearly all of `threads` processors.
-/// @param seconds  of a repetition; three of those that take over a second are enough
+/// @param seconds  of a repetition; three of those that take over a second are enough, one of those
+///                 that take over ten
 Protocol protocol_for(Backend backend, int threads, double seconds = 0);
 
 /// The rows of add_step_rows(), those of one input next to each other.
