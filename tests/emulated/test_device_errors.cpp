@@ -156,7 +156,7 @@ TEST_F(DeviceErrors, ASweepIsRecordedAgainWhenAnyArgumentChanged) {
   const View<const std::int64_t> color_start{colors.data(), 3};
   PartGraphs graphs;
   for (const double amount : {1.0, 10.0, 1.0}) {
-    graphs.launch(stream, color_start, AddOp{values.view(3).data, amount});
+    graphs.launch(stream, 132, color_start, AddOp{values.view(3).data, amount});
   }
   std::vector<double> sums(3);
   cudaMemcpyAsync(sums.data(), values.view(3).data, 3 * sizeof(double), cudaMemcpyDeviceToHost,
