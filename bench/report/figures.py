@@ -42,6 +42,10 @@ def time_of(row):
     return row.time
 
 
+def in_words(count):
+    return f"{count / 1e6:.3g} M" if count >= 1e6 else f"{count:,.0f}"
+
+
 def lines_of(files, pattern, counter):
     """{(label, color, style): [(counter, ms)]} of the rows whose workload matches.
 
@@ -72,10 +76,16 @@ def draw(files, folder):
          "tetrahedra", TETS, "tets"),
     ):
         with Chart(folder, name, title, x, "ms") as chart:
-            chart.legend = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}
-            use_logarithms(chart.axes[0])
-            for (label, color, style), points in lines_of(files, pattern, counter).items():
-                chart.axes[0].plot(*zip(*points), style, marker="o", color=color, label=label)
+            chart.legend = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13)}
+            chart.figure.set_size_inches(7, 6.4)
+            axis = chart.axes[0]
+            use_logarithms(axis)
+            lines = lines_of(files, pattern, counter)
+            for (label, color, style), points in sorted(lines.items()):
+                axis.plot(*zip(*points), style, marker="o", color=color, label=label)
+            places = sorted({x for points in lines.values() for x, _ in points})
+            axis.set_xticks(places, [in_words(x) for x in places])
+            axis.set_xticks([], minor=True)
 
 
 def table(files):
