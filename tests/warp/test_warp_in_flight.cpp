@@ -37,6 +37,20 @@ TEST_P(InFlight, StepsHaveTheBitsOfStepsOneByOne) {
   }
 }
 
+/// Results and sources of more than 4 MiB: a device copies memory that is not page-locked in
+/// pieces.
+TEST_P(InFlight, LargeResultsHaveTheSameBitsInLockedAndInPageableMemory) {
+  const scenes::Scene large = scenes::adversarial_scene("waved", 40);
+  const std::vector<Volume> tensors = {
+      scenes::wavy_volume(large.source_grid, PixelType::float64, 9)};
+  ASSERT_GT(tensors[0].data.size(), std::size_t{4} << 20);
+  const Steps steps = {large.deformed, scenes::waved(large.deformed, 0.5, 1),
+                       scenes::waved(large.deformed, 0.5, 2)};
+
+  EXPECT_TRUE(steps_in_flight(tensors, large, options, steps, Pages::pageable, true) ==
+              steps_in_flight(tensors, large, options, steps, Pages::locked, true));
+}
+
 /// The second of four steps has a node too far away, which is found only while it is computed.
 TEST_P(InFlight, AnErrorIsThrownOnceByItsOwnStep) {
   Steps steps = {shaken(1), shaken(2), shaken(3), shaken(4)};
