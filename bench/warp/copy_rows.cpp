@@ -153,7 +153,7 @@ std::vector<RingCase> ring_cases(int threads) {
         cases.push_back({512, direction, {usual.slot_bytes, usual.slots, count}});
     }
     for (const auto& [slots, slot] :
-         std::vector<std::pair<std::int64_t, std::size_t>>{{24, 1}, {8, 2}, {24, 2}, {12, 4}}) {
+         std::vector<std::pair<std::int64_t, std::size_t>>{{24, 1}, {8, 2}, {12, 2}, {12, 4}}) {
       cases.push_back({512, direction, {slot * mebibyte, slots, usual.threads}});
     }
   }

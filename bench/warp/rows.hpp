@@ -72,8 +72,8 @@ void add_resident_rows(const Selection& selection);
 ///   first_step          into memory that nothing has touched
 ///   lock                page-locking such memory
 ///
-/// staging/to_host_MIB/12x2/cuda/threads:T, to_device_MIB: one copy of pageable memory through a
-/// StagingRing of 12 slots of 2 MiB, in turn with copies by the runtime and of page-locked memory.
+/// staging/to_host_MIB/24x2/cuda/threads:T, to_device_MIB: one copy of pageable memory through a
+/// StagingRing of 24 slots of 2 MiB, in turn with copies by the runtime and of page-locked memory.
 /// to_host_untouched_MIB: into memory that nothing has touched.
 ///
 ///   rate, runtime_rate, locked_rate [GB/s]

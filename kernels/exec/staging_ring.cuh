@@ -27,7 +27,7 @@ class StagingRing {
  public:
   struct Shape {
     std::size_t slot_bytes = std::size_t{2} << 20;
-    std::int64_t slots = 12;
+    std::int64_t slots = 24;
     /// Eight threads copy faster than the bus.
     int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 8U));
   };
