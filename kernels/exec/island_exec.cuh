@@ -76,7 +76,7 @@ class WarpTeam {
       const Sum mine = warp_sum(terms_of<Sum>(part + first(), end, term));
       part == begin ? total = mine : total += mine;
     }
-    wait();  // shuffles order no memory: the terms were read before anything is written next
+    __syncwarp();  // shuffles order no memory: the terms are read before anything is written next
     return shuffled_from_first(total);
   }
 };

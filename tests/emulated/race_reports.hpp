@@ -22,8 +22,9 @@ __attribute__((visibility("default"), no_sanitize("thread"))) void __tsan_on_rep
   ++tetwarp::test::race_count;
   tetwarp::simt::barrier_lines().without_order = 0;
 }
-/// Tests take what they expect, and the listener of the program refuses the rest.
+/// Tests take what they expect, and the listener of the program refuses the rest. Lines of the
+/// source are printed with TSAN_OPTIONS=symbolize=1, which takes long.
 __attribute__((visibility("default"), no_sanitize("thread"))) const char* __tsan_default_options() {
-  return "exitcode=0:suppress_equal_stacks=0:suppress_equal_addresses=0:history_size=4";
+  return "exitcode=0:symbolize=0:suppress_equal_stacks=0:suppress_equal_addresses=0:history_size=4";
 }
 }

@@ -234,7 +234,7 @@ TEST(TwoLevelEmulated, LaunchesFillADevice) {
   for (const simt::LaunchShape& launch : take_launches()) {
     SCOPED_TRACE(launch.kernel);
     const auto is_of = [&](const char* op) { return launch.kernel.find(op) != std::string::npos; };
-    if (is_of("Sum")) {
+    if (is_of("Sum") || is_of("FlagCount")) {
       EXPECT_EQ(launch.threads, sum_threads);
     } else if (!is_of("scan") && !is_of("GradientArrays")) {
       EXPECT_TRUE(launch.blocks >= 132 || launch.threads == 32)
