@@ -110,6 +110,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_grid.cpp
   tests/cli/test_cli_outputs.cpp
   tests/cli/test_cli_pair.cpp
+  tests/cli/test_cli_points.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp

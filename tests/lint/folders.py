@@ -92,6 +92,7 @@ ALLOWED = {
     "io/vtkhdf": ["io/nifti", "io/h5", "io/files", *IO],
     "io/volume": ["io/vtkhdf", "io/nifti", "io/h5", "io/files", *IO],
     "io/import": ["io/volume", "io/nifti", "io/h5", "io/files", *IO],
+    "io/points": ["io/import", "io/vtkhdf", "io/h5", "io/files", *IO],
     "io/reader": ["io/import", "io/volume", "io/files", *IO],
     "io/scene": ["io/files", *IO],
     "io/picture": ["io/files", *IO],
