@@ -101,8 +101,8 @@ tetwarp_sources(tetwarp host/warp
   block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp map_points.cpp point_search.cpp step_queue.cpp
   transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
-  backend_cpu.cpp map_points_cpu.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
-  row_label_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
+  backend_cpu.cpp map_points_cpu.cpp resample.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
+  row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
   backend_${tetwarp_cuda} map_points_${tetwarp_cuda})
 if(TETWARP_HAS_CUDA)
@@ -130,7 +130,7 @@ endforeach()
 # Highway compiles these files once per vector instruction set. SSE4 is left out: its vectors are as
 # wide as those of the baseline (SSSE3), and only processors without AVX2 would use it.
 set_source_files_properties(host/warp/cpu/cell_cull_cpu.cpp host/warp/cpu/cell_raster_cpu.cpp
-  host/warp/cpu/row_label_cpu.cpp host/warp/cpu/row_transform_cpu.cpp
+  host/warp/cpu/row_label_cpu.cpp host/warp/cpu/row_resample_cpu.cpp host/warp/cpu/row_transform_cpu.cpp
   PROPERTIES COMPILE_DEFINITIONS HWY_DISABLED_TARGETS=HWY_SSE4 SKIP_PRECOMPILE_HEADERS ON)
 # A third of the files include Eigen.
 target_precompile_headers(tetwarp PRIVATE <algorithm> <string> <vector> <Eigen/Dense> <Eigen/SparseCore>)

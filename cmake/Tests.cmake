@@ -135,6 +135,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_face_sign.cpp
     tests/warp/test_hex_split.cpp
     tests/warp/test_output_edges.cpp
+    tests/warp/test_resample.cpp
     tests/warp/test_row_vectors.cpp
     tests/warp/test_skip_constant.cpp
     tests/warp/test_skip_unchanged.cpp
@@ -268,10 +269,10 @@ endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
 set(tetwarp_public_headers backend blocks choices contact contact_adhesion contact_arrays
-  contact_problem contact_tracker error make map_points mesh names page_lock report scene scene_parts
-  simulate tetwarp version volume warp)
+  contact_problem contact_tracker error make map_points mesh names page_lock report resample scene
+  scene_parts simulate tetwarp version volume warp)
 if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers contact_io io mesh_import point_file scene_io)
+  list(APPEND tetwarp_public_headers contact_io io mesh_import point_file scene_io transform_file)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
   configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)

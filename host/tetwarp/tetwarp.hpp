@@ -15,6 +15,7 @@
 #include <tetwarp/names.hpp>
 #include <tetwarp/page_lock.hpp>
 #include <tetwarp/report.hpp>
+#include <tetwarp/resample.hpp>
 #include <tetwarp/scene.hpp>
 #include <tetwarp/scene_parts.hpp>
 #include <tetwarp/simulate.hpp>

@@ -14,6 +14,8 @@ void add_warp_command(CLI::App& app, Run& run);
 void add_mesh_command(CLI::App& app, Run& run);
 void add_deform_command(CLI::App& app, Run& run);
 void add_points_command(CLI::App& app, Run& run);
+void add_compose_command(CLI::App& app, Run& run);
+void add_invert_command(CLI::App& app, Run& run);
 void add_contact_command(CLI::App& app, Run& run);
 void add_simulate_command(CLI::App& app, Run& run);
 void add_import_command(CLI::App& app, Run& run);
