@@ -18,8 +18,8 @@ struct TransformFile {
       convention;  ///< for a line to print: "displacements along LPS axes in mm (intent ...)"
 };
 
-/// True for what read_transform() reads: names that end in .tfm, .txt or .mat, NIfTI images of
-/// three components, and volumes with an array `tetwarp_displacement`.
+/// True for what read_transform() reads: names that end in .tfm, .txt or .mat, images (NIfTI,
+/// NRRD, MetaImage) of three components, and volumes with an array `tetwarp_displacement`.
 TETWARP_IO_EXPORT bool is_transform_file(const std::string& path);
 
 /// Reads a transform from positions of the output to positions in the source, as resamplers take
@@ -30,8 +30,9 @@ TETWARP_IO_EXPORT bool is_transform_file(const std::string& path);
 /// - NIfTI displacement fields. Their intent tells the axes of the components: VECTOR is LPS and mm
 ///   (ITK, ANTs), DISPVECT is RAS in the header's unit, VECTOR named NREG_TRANS is NiftyReg's:
 ///   displacements or positions in RAS. Any other needs `axes`
+/// - NRRD files and MetaImages of three components: LPS, as ITK and 3D Slicer write them
 /// - the array `tetwarp_displacement` of a VTKHDF volume, as `tetwarp warp` writes it
-/// @param axes  of the components of a NIfTI field, instead of what the intent tells
+/// @param axes  of the components of a field in an image, instead of what its format tells
 /// @throws IoError  on other transforms, files that do not tell their convention, damaged files
 TETWARP_IO_EXPORT TransformFile read_transform(const std::string& path,
                                                const std::optional<Axes>& axes = {});

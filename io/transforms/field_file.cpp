@@ -105,6 +105,18 @@ TransformFile read_nifti_field(const std::string& path, const std::optional<Axes
               convention.said_by + ")"};
 }
 
+TransformFile read_image_field(const std::string& path, const std::optional<Axes>& axes) {
+  const Volume volume = read_volume(path);
+  DisplacementField field{volume.grid, numbers_of(path, volume, 1)};
+  const bool is_lps = axes.value_or(Axes::lps) == Axes::lps;
+  for (std::size_t n = 0; is_lps && n < field.displacement.size(); ++n) {
+    if (n % 3 < 2) field.displacement[n] = 0 - field.displacement[n];
+  }
+  return {std::move(field),
+          std::string("displacements along ") + (is_lps ? "LPS" : "RAS") +
+              (axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them")};
+}
+
 TransformFile read_volume_field(const std::string& path) {
   const Volume volume = read_volume(path, "tetwarp_displacement");
   return {DisplacementField{volume.grid, numbers_of(path, volume, 1)},

@@ -1,5 +1,5 @@
 /// @file field_file.hpp
-/// Displacement fields in NIfTI images and VTKHDF volumes.
+/// Displacement fields in NIfTI images, NRRD files, MetaImages and VTKHDF volumes.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,6 +10,7 @@ namespace tetwarp {
 
 /// @throws IoError  as read_transform()
 TransformFile read_nifti_field(const std::string& path, const std::optional<Axes>& axes);
+TransformFile read_image_field(const std::string& path, const std::optional<Axes>& axes);
 TransformFile read_volume_field(const std::string& path);
 
 }  // namespace tetwarp

@@ -20,6 +20,7 @@ bool is_transform_file(const std::string& path) {
   if (has_transform_name(path)) return true;
   switch (kind_of(path)) {
     case FileKind::nifti:
+    case FileKind::image:
       return read_volume_header(path).arrays.front().components == 3;
     case FileKind::volume: {
       const std::vector<ArrayHeader> arrays = read_volume_header(path).arrays;
@@ -34,8 +35,10 @@ bool is_transform_file(const std::string& path) {
 
 TransformFile read_transform(const std::string& path, const std::optional<Axes>& axes) {
   if (!has_transform_name(path)) {
-    return kind_of(path) == FileKind::nifti ? read_nifti_field(path, axes)
-                                            : read_volume_field(path);
+    const FileKind kind = kind_of(path);
+    return kind == FileKind::nifti   ? read_nifti_field(path, axes)
+           : kind == FileKind::image ? read_image_field(path, axes)
+                                     : read_volume_field(path);
   }
   const bool is_matlab = has_extension(path, ".mat");
   return {affine_of(path, is_matlab ? read_itk_matlab(path) : read_itk_text(path)),

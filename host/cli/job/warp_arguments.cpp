@@ -140,13 +140,13 @@ void declare_outside_options(CLI::App& app, WarpOptions& warp) {
 namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
   app.add_option("FILES", arguments.files,
-                 "one or more volumes (VTKHDF, NIfTI), then the mesh that warps "
+                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage), then the mesh that warps "
                  "them (VTKHDF, .msh, "
                  ".vtu, .vtk), or one volume and a displacement field or an affine "
                  "transform of ITK (.tfm, .txt, .mat)")
       ->type_name("");
   app.add_option("-o,--output", arguments.output,
-                 "file to write, .vtkhdf or .nii.gz; for several volumes a folder")
+                 "file to write, .vtkhdf, .nii.gz, .nrrd or .mha; for several volumes a folder")
       ->type_name("OUT");
   app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
       ->allow_extra_args(false)
