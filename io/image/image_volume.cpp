@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/memory.hpp"
 #include "io/files/scratch_file.hpp"
 #include "io/image/meta_header.hpp"
 #include "io/image/nrrd_header.hpp"
@@ -106,17 +107,21 @@ class ImageSource : public VolumeSource {
         array_{image_array, header_.type, header_.components},
         scratch_(options.scratch),
         file_(header_.data_file, path) {
-    if (header_.data_offset < 0) {
-      if (header_.is_packed)
-        throw IoError(path, "", "a packed image needs the place of its samples");
-      header_.data_offset = file_.size() - bytes();
-    }
-    const bool is_short = !header_.is_packed && file_.size() - header_.data_offset < bytes();
-    if (header_.data_offset < 0 || is_short) {
+    // Packed by zlib, samples take no less than this share of their size.
+    constexpr double least_share = 1.0 / 1040;
+    const double share = header_.is_packed ? least_share : 1;
+    const double wanted = static_cast<double>(header_.grid.voxel_count()) *
+                          static_cast<double>(header_.voxel_bytes()) * share;
+    const double after_header =
+        static_cast<double>(file_.size() - std::max<std::int64_t>(0, header_.data_offset));
+    if (wanted > after_header) {
       throw IoError(path, "",
-                    "its samples need " + std::to_string(bytes()) + " bytes, which '" +
-                        header_.data_file + "' does not have: truncated or damaged");
+                    "its samples need " + bytes_text(wanted) + ", which '" + header_.data_file +
+                        "' does not have: truncated or damaged");
     }
+    if (header_.data_offset >= 0) return;
+    if (header_.is_packed) throw IoError(path, "", "a packed image needs the place of its samples");
+    header_.data_offset = file_.size() - bytes();
   }
 
   const Grid& grid() const override { return header_.grid; }

@@ -64,6 +64,7 @@ ResampleOptions resample_options(const WarpArguments& arguments, const CLI::App&
 
 /// The volume to resample.
 struct Source {
+  VolumeReadOptions read;
   VolumeHeader header;
   std::vector<ArrayHeader> arrays;
   std::vector<std::int64_t> steps;
@@ -73,7 +74,8 @@ struct Source {
 Source open_source(const WarpArguments& arguments) {
   const std::string& path = arguments.files.front();
   Source source;
-  source.header = read_volume_header(path);
+  source.read.are_labels = arguments.warp.filter == Filter::labels;
+  source.header = read_volume_header(path, source.read);
   source.arrays = choose_arrays(source.header, arguments, path);
   check_arrays(path, source.header.grid, source.arrays, arguments);
   const auto count = std::max<std::int64_t>(1, std::ssize(source.header.times));
@@ -100,7 +102,8 @@ void write_step(const WarpArguments& arguments,
                 ProgressBar& bar) {
   const Grid& output = *options.output_grid;
   for (std::size_t a = 0; a < source.arrays.size(); ++a) {
-    const Volume volume = read_volume(arguments.files.front(), source.arrays[a].name, step);
+    const Volume volume =
+        read_volume(arguments.files.front(), source.arrays[a].name, step, source.read);
     stop_if_interrupted();
     Volume result = make_volume(output, volume.type, volume.components, volume.name);
     const VolumeView view(volume);
