@@ -14,11 +14,13 @@ tetwarp_sources(tetwarp_command host/cli/simulate
   simulate_contacts.cpp simulate_frames.cpp simulate_pictures.cpp simulate_report.cpp
   simulate_run.cpp simulate_series.cpp simulate_warp.cpp)
 tetwarp_sources(tetwarp_command host/cli/tools
-  cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp cmd_mesh.cpp
-  cmd_render.cpp displacement.cpp read_array.cpp)
+  cmd_compose.cpp cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp
+  cmd_invert.cpp cmd_mesh.cpp cmd_points.cpp cmd_render.cpp displacement.cpp read_array.cpp
+  transform_chain.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
   batch.cpp batch_file.cpp block_warper.cpp cmd_warp.cpp job_share.cpp part_exchange.cpp
-  part_queue.cpp report_exchange.cpp series_in_parts.cpp step_writer.cpp volume_blocks.cpp
+  part_queue.cpp report_exchange.cpp series_in_parts.cpp step_writer.cpp transform_job.cpp
+  volume_blocks.cpp
   volume_run.cpp volume_sources.cpp volume_steps.cpp volume_task.cpp warp_job.cpp)
 set_target_properties(tetwarp_command PROPERTIES
   OUTPUT_NAME tetwarp UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)

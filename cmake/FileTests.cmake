@@ -68,13 +68,17 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME axes COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_axes.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME images COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_images.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME transforms COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_transforms.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME walk COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_walk.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME simulation COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME film COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader axes walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  set_tests_properties(vtk_reader axes images transforms walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
@@ -110,6 +114,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_grid.cpp
   tests/cli/test_cli_outputs.cpp
   tests/cli/test_cli_pair.cpp
+  tests/cli/test_cli_points.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp
@@ -119,6 +124,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_skip.cpp
   tests/cli/test_cli_straight.cpp
   tests/cli/test_cli_tools.cpp
+  tests/cli/test_cli_transforms.cpp
   tests/cli/test_cli_warnings.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests

@@ -17,7 +17,10 @@ tetwarp_sources(tetwarp_io io/fclib
 tetwarp_sources(tetwarp_io io/files
   extension.cpp finished_file.cpp leftover_files.cpp memory.cpp names.cpp scratch_file.cpp)
 tetwarp_sources(tetwarp_io io/h5
-  h5.cpp h5_attribute.cpp h5_disk.cpp h5_read.cpp h5_rows.cpp h5_write.cpp value_names.cpp)
+  h5.cpp h5_attribute.cpp h5_disk.cpp h5_output.cpp h5_read.cpp h5_rows.cpp h5_write.cpp
+  value_names.cpp)
+tetwarp_sources(tetwarp_io io/image
+  image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp nrrd_header.cpp)
 tetwarp_sources(tetwarp_io io/import
   child_process.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp)
 tetwarp_sources(tetwarp_io io/nifti
@@ -25,9 +28,13 @@ tetwarp_sources(tetwarp_io io/nifti
   nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)
 tetwarp_sources(tetwarp_io io/picture
   film_${tetwarp_gif}.cpp palette.cpp png_image.cpp)
+tetwarp_sources(tetwarp_io io/points
+  foreign_points.cpp markup_points.cpp point_file.cpp text_points.cpp vtkhdf_points.cpp)
 tetwarp_sources(tetwarp_io io/scene
   scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_files.cpp
   scene_geometry.cpp scene_json.cpp scene_motion.cpp)
+tetwarp_sources(tetwarp_io io/transforms
+  field_file.cpp itk_transform.cpp transform_file.cpp)
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf
@@ -58,7 +65,7 @@ tetwarp_sources(tetwarp_reader io/reader
   mesh_${tetwarp_gmsh}.cpp mesh_readers.cpp mesh_sender.cpp mesh_${tetwarp_vtk}.cpp)
 if(TETWARP_HAS_VTK)
   tetwarp_sources(tetwarp_reader io/reader
-    mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp)
+    mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_point_set.cpp)
 endif()
 set_target_properties(tetwarp_reader PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_reader PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/io)

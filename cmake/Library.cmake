@@ -50,7 +50,7 @@ tetwarp_sources(tetwarp host/reference/simulate
   nearest_material.cpp prescribed.cpp rigid_mass.cpp shares.cpp springs.cpp step_system.cpp
   system.cpp)
 tetwarp_sources(tetwarp host/reference/warp
-  backend_reference.cpp overlap.cpp sample.cpp sample_transform.cpp)
+  backend_reference.cpp map_points_reference.cpp overlap.cpp sample.cpp sample_transform.cpp)
 tetwarp_sources(tetwarp host/scene
   alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp
   lattice_search.cpp marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp
@@ -98,13 +98,13 @@ tetwarp_sources(tetwarp host/simulate/surfaces
   contact_thickness.cpp flat_edges.cpp kept_places.cpp near_pair.cpp pair_materials.cpp
   round_shape.cpp scene_surfaces.cpp surface_motion.cpp)
 tetwarp_sources(tetwarp host/warp
-  backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp step_queue.cpp
-  transform_checks.cpp warper.cpp)
+  backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp map_points.cpp
+  point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
-  backend_cpu.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp row_label_cpu.cpp row_scalar.cpp
-  row_transform_cpu.cpp)
+  backend_cpu.cpp map_points_cpu.cpp resample.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
+  row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
-  backend_${tetwarp_cuda} device_start_${tetwarp_cuda})
+  backend_${tetwarp_cuda} device_start_${tetwarp_cuda} map_points_${tetwarp_cuda})
 if(TETWARP_HAS_CUDA)
   tetwarp_sources(tetwarp kernels/exec
     primitives_cuda.cu)
@@ -130,7 +130,7 @@ endforeach()
 # Highway compiles these files once per vector instruction set. SSE4 is left out: its vectors are as
 # wide as those of the baseline (SSSE3), and only processors without AVX2 would use it.
 set_source_files_properties(host/warp/cpu/cell_cull_cpu.cpp host/warp/cpu/cell_raster_cpu.cpp
-  host/warp/cpu/row_label_cpu.cpp host/warp/cpu/row_transform_cpu.cpp
+  host/warp/cpu/row_label_cpu.cpp host/warp/cpu/row_resample_cpu.cpp host/warp/cpu/row_transform_cpu.cpp
   PROPERTIES COMPILE_DEFINITIONS HWY_DISABLED_TARGETS=HWY_SSE4 SKIP_PRECOMPILE_HEADERS ON)
 # A third of the files include Eigen.
 target_precompile_headers(tetwarp PRIVATE <algorithm> <string> <vector> <Eigen/Dense> <Eigen/SparseCore>)

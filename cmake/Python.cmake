@@ -30,7 +30,7 @@ endif()
 nanobind_add_module(tetwarp_python NB_STATIC NB_SUPPRESS_WARNINGS
   python/arrays.cpp python/bind_contact.cpp python/bind_files.cpp python/bind_mesh.cpp
   python/bind_simulate.cpp python/bind_volume.cpp python/bind_warp.cpp python/interruption.cpp
-  python/module.cpp python/point_map.cpp)
+  python/module.cpp)
 set(tetwarp_package ${PROJECT_BINARY_DIR}/python/tetwarp)
 set_target_properties(tetwarp_python PROPERTIES
   OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${tetwarp_package}

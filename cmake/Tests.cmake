@@ -137,6 +137,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_face_sign.cpp
     tests/warp/test_hex_split.cpp
     tests/warp/test_output_edges.cpp
+    tests/warp/test_resample.cpp
     tests/warp/test_row_vectors.cpp
     tests/warp/test_skip_constant.cpp
     tests/warp/test_skip_unchanged.cpp
@@ -239,7 +240,8 @@ if(NOT BUILD_SHARED_LIBS)
   # cuda is the emulated device, in the other a real one.
   add_library(tetwarp_backend_tests OBJECT
     tests/contact/test_contact_cuda.cpp
-    tests/warp/test_blocks.cpp tests/warp/test_grid_point_masks.cpp tests/warp/test_parity.cpp
+    tests/warp/test_blocks.cpp tests/warp/test_grid_point_masks.cpp tests/warp/test_map_points.cpp
+    tests/warp/test_parity.cpp
     tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
     tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp
     tests/warp/test_warp_intensity.cpp tests/warp/test_warp_quantities.cpp
@@ -289,10 +291,10 @@ endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
 set(tetwarp_public_headers backend blocks choices contact contact_adhesion contact_arrays
-  contact_problem contact_tracker error make mesh names page_lock report scene scene_parts simulate
-  tetwarp version volume warp)
+  contact_problem contact_tracker error make map_points mesh names page_lock report resample scene
+  scene_parts simulate tetwarp version volume warp)
 if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers contact_io io mesh_import scene_io)
+  list(APPEND tetwarp_public_headers contact_io io mesh_import point_file scene_io transform_file)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
   configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)

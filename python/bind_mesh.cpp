@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <optional>
 #include <tetwarp/make.hpp>
+#include <tetwarp/map_points.hpp>
 #include <tetwarp/surface.hpp>
 
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
-#include "python/point_map.hpp"
 
 namespace tetwarp::python {
 namespace {
@@ -81,18 +81,19 @@ void bind_mesh(nb::module_& module) {
       nb::arg("samples"), nb::arg("grid"), nb::arg("value"), nb::arg("triangles").none());
   module.def(
       "map_points",
-      [](const InPoints& points, const Grid& grid, const InPoints& from, const InTets& tets,
-         const InPoints& to) {
+      [](const InPoints& points, const std::optional<Grid>& grid, const InPoints& rest,
+         const InTets& tets, const InHexes& hexes, const InPoints& deformed, bool inverse) {
         MappedPoints mapped;
         {
           const nb::gil_scoped_release release;
-          mapped =
-              map_points(points_of(points), grid, points_of(from), tets_of(tets), points_of(to));
+          mapped = map_points(mesh_of(rest, tets, hexes), points_of(deformed), points_of(points),
+                              {.inverse = inverse, .grid = grid});
         }
         return nb::make_tuple(array_of(std::move(mapped.points)),
                               array_of(std::move(mapped.owners)));
       },
-      nb::arg("points"), nb::arg("grid"), nb::arg("start"), nb::arg("tets"), nb::arg("end"));
+      nb::arg("points"), nb::arg("grid").none(), nb::arg("rest"), nb::arg("tets"), nb::arg("hexes"),
+      nb::arg("deformed"), nb::arg("inverse"));
 }
 
 }  // namespace tetwarp::python

@@ -42,6 +42,9 @@ void declare(CLI::App& app, Run& run) {
   add_contact_command(app, run);
   add_mesh_command(app, run);
   add_deform_command(app, run);
+  add_points_command(app, run);
+  add_compose_command(app, run);
+  add_invert_command(app, run);
   add_import_command(app, run);
   add_export_command(app, run);
   add_render_command(app, run);

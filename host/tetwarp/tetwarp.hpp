@@ -10,10 +10,12 @@
 #include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/make.hpp>
+#include <tetwarp/map_points.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/names.hpp>
 #include <tetwarp/page_lock.hpp>
 #include <tetwarp/report.hpp>
+#include <tetwarp/resample.hpp>
 #include <tetwarp/scene.hpp>
 #include <tetwarp/scene_parts.hpp>
 #include <tetwarp/simulate.hpp>

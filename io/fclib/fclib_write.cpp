@@ -1,8 +1,5 @@
 /// @file fclib_write.cpp
 /// Writes problems and solutions as FCLIB files that FCLIB's own readers accept.
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <string>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io.hpp>
@@ -11,8 +8,7 @@
 #include "io/fclib/fclib_matrix.hpp"
 #include "io/fclib/fclib_numbers.hpp"
 #include "io/fclib/fclib_rows.hpp"
-#include "io/files/finished_file.hpp"
-#include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_output.hpp"
 #include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
@@ -21,53 +17,6 @@ using fclib::Orientation;
 using fclib::write_integers;
 using fclib::write_reals;
 using fclib::write_text;
-
-void copy_bytes(const std::string& from, const FinishedFile& to) {
-  std::ifstream in(from, std::ios::binary);
-  std::ofstream out(to.temporary(), std::ios::binary);
-  if (!(out << in.rdbuf()) || !out.flush()) {
-    throw IoError(to.path(), "", std::string("cannot be written: ") + std::strerror(errno));
-  }
-}
-
-/// A file that is being written; removed unless finish() is called.
-class FclibOutput {
- public:
-  explicit FclibOutput(const std::string& path)
-      : finished_(path), file_(h5::create_file(path, finished_.temporary(), disk_)) {}
-
-  /// Begins with a copy of the file `original`, byte by byte: H5Ocopy would also read parts that
-  /// are not needed and crash where they are damaged.
-  FclibOutput(const std::string& path, const std::string& original)
-      : finished_(path), file_{path, "", {}} {
-    copy_bytes(original, finished_);
-    const h5::Handle access = h5::disk_access(&disk_);
-    file_.handle =
-        h5::Handle(H5Fopen(finished_.temporary().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose);
-    if (!file_.handle) file_.fail_with_reason("cannot be opened for writing");
-  }
-
-  const h5::Object& file() const { return file_; }
-
-  void remove(const std::string& name) {
-    if (H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT) <= 0) return;
-    if (H5Ldelete(file_.id(), name.c_str(), H5P_DEFAULT) < 0) {
-      throw IoError(file_.file, "/" + name, "cannot be replaced: " + h5::last_reason());
-    }
-  }
-
-  /// Closes, flushes and renames. Everything else that is open in the file must be closed before.
-  std::int64_t finish() {
-    if (!file_.handle.close()) file_.fail_with_reason("cannot be closed");
-    disk_.check(file_);
-    return finished_.finish();
-  }
-
- private:
-  FinishedFile finished_;
-  h5::Disk disk_;
-  h5::Object file_;
-};
 
 void write_problem(const h5::Object& root, const ContactProblem& problem) {
   write_integers(root, "spacedim", {3});
@@ -187,7 +136,7 @@ std::int64_t write_contact_problem(const std::string& path,
   } catch (const ContactProblemError& error) {
     throw IoError(path, fclib::path_of(error.field(), problem.is_local()), error.what());
   }
-  FclibOutput output(path);
+  h5::OutputFile output(path);
   {
     const h5::Object root =
         h5::create_group(output.file(), problem.is_local() ? "fclib_local" : "fclib_global");
@@ -214,7 +163,7 @@ std::int64_t write_contact_solution(const std::string& path,
                                     const ContactModes* modes) {
   const h5::Silence silence;
   check_lengths(problem_path, solution);
-  FclibOutput output(path, problem_path);
+  h5::OutputFile output(path, problem_path);
   output.remove("solution");
   output.remove("adhesion_next");
   write_solution(output.file(), solution, modes);

@@ -15,6 +15,7 @@ constexpr EnumName<FileKind> file_kind_names[] = {
     {FileKind::hdf5, "general HDF5 file"},
     {FileKind::nifti, "NIfTI image"},
     {FileKind::analyze, "Analyze 7.5 image"},
+    {FileKind::image, "NRRD image or MetaImage"},
     {FileKind::unknown, "file of unknown kind"}};
 }  // namespace
 

@@ -5,9 +5,11 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <tetwarp/error.hpp>
+#include <utility>
 #include <vector>
 
 #include "io/files/memory.hpp"
@@ -45,25 +47,21 @@ std::string find_reader(const std::string& path) {
                 "needs the program tetwarp-read, which is not at " + searched +
                     "; install it, or set TETWARP_READER to its path");
 }
-}  // namespace
 
-ImportedMesh read_mesh_in_child(const std::string& path,
-                                const MeshImportOptions& options,
-                                const ChildLimits& limits) {
-  std::vector<std::string> words = {find_reader(path), path, std::to_string(limits.memory),
-                                    options.needs_solids ? "solids" : "triangles"};
-  if (options.displacement) words.push_back(*options.displacement);
+/// Starts the program with words and has `receive` read its result.
+template <class Receive>
+void run_reader(const std::string& path,
+                std::vector<std::string> words,
+                const ChildLimits& limits,
+                const Receive& receive) {
+  words.insert(words.begin(), {find_reader(path), path, std::to_string(limits.memory)});
   std::string dataset, problem;
   try {
     ChildProcess child(std::move(words), limits.seconds);
     MessageReader message(child, available_memory());
     ChildOutcome outcome{};
     message(outcome);
-    if (outcome == ChildOutcome::mesh) {
-      ImportedMesh mesh;
-      exchange_members(message, mesh);
-      return mesh;
-    }
+    if (outcome == ChildOutcome::result) return receive(message);
     message(dataset);
     message(problem);
   } catch (const ChildError& error) {
@@ -72,6 +70,38 @@ ImportedMesh read_mesh_in_child(const std::string& path,
                       ": the file is damaged or uses what the library cannot read; write it again");
   }
   throw IoError(path, dataset, problem);
+}
+}  // namespace
+
+ChildLimits limits_for(const std::string& path, double time) {
+  std::error_code error;
+  const auto bytes = static_cast<double>(fs::file_size(path, error));
+  const double seconds = 120 + (error ? 0 : 5e-6 * bytes);
+  const double memory = 0x1p32 + (error ? 0 : 1000 * bytes);
+  return {time > 0 ? time : seconds, std::min(memory, available_memory())};
+}
+
+ImportedMesh read_mesh_in_child(const std::string& path,
+                                const MeshImportOptions& options,
+                                const ChildLimits& limits) {
+  std::vector<std::string> words = {options.needs_solids ? "solids" : "triangles"};
+  if (options.displacement) words.push_back(*options.displacement);
+  ImportedMesh mesh;
+  run_reader(path, std::move(words), limits,
+             [&](auto& message) { exchange_members(message, mesh); });
+  return mesh;
+}
+
+std::vector<Point3> read_points_in_child(const std::string& path) {
+  std::vector<Point3> points;
+  run_reader(path, {"points"}, limits_for(path), [&](auto& message) { message(points); });
+  return points;
+}
+
+void place_points_in_child(const std::string& path,
+                           const std::string& numbers,
+                           const std::string& output) {
+  run_reader(path, {"place", numbers, output}, limits_for(path), [](auto&) {});
 }
 
 }  // namespace tetwarp

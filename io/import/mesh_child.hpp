@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include <tetwarp/mesh_import.hpp>
 
@@ -14,8 +15,12 @@ struct ChildLimits {
   double memory;   ///< [byte] that the program may allocate
 };
 
-/// First value of a message: a mesh follows, or name of a dataset and text of an error.
-enum class ChildOutcome : std::uint8_t { mesh, error };
+/// Far above the time and memory that any sound file needs, also on a busy machine.
+/// @param time  [s] that it may take; 0: by the size of the file
+ChildLimits limits_for(const std::string& path, double time = 0);
+
+/// First value of a message: the result follows, or name of a dataset and text of an error.
+enum class ChildOutcome : std::uint8_t { result, error };
 
 /// Has the program read a mesh, which is not checked. TETWARP_READER in the environment is its
 /// path; else it is searched beside this library or program and where both are installed.
@@ -24,6 +29,16 @@ enum class ChildOutcome : std::uint8_t { mesh, error };
 ImportedMesh read_mesh_in_child(const std::string& path,
                                 const MeshImportOptions& options,
                                 const ChildLimits& limits);
+
+/// Has the program read the points of a file; errors as above.
+std::vector<Point3> read_points_in_child(const std::string& path);
+
+/// Has the program write a file with other points and an array `inside`; errors as above.
+/// @param numbers  a file of x y z as float64 for every point, then a byte for every point
+/// @param output   of the format that the end of its name tells
+void place_points_in_child(const std::string& path,
+                           const std::string& numbers,
+                           const std::string& output);
 
 /// Sends or reads all members of an array.
 /// @param message  a MessageWriter or a MessageReader

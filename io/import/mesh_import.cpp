@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <span>
@@ -17,7 +16,6 @@
 
 #include "host/base/point3.hpp"
 #include "io/files/extension.hpp"
-#include "io/files/memory.hpp"
 #include "io/h5/value_names.hpp"
 #include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"
@@ -51,16 +49,6 @@ void drop_long_names(ImportedMesh& mesh) {
     mesh.left_out.push_back("names of " + std::to_string(array.value_names.size()) + " groups");
     array.value_names.clear();
   }
-}
-
-/// Far above the time and memory that any sound file needs, also on a busy machine.
-ChildLimits limits_for(const std::string& path, const MeshImportOptions& options) {
-  std::error_code error;
-  const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
-  const double seconds = 120 + (error ? 0 : 5e-6 * bytes);
-  const double memory = 0x1p32 + (error ? 0 : 1000 * bytes);
-  return {options.time_limit > 0 ? options.time_limit : seconds,
-          std::min(memory, available_memory())};
 }
 
 /// Checks what a reader has returned. Displacements that are not finite become 0 at nodes of no
@@ -144,7 +132,7 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   if (!std::ifstream(path)) {
     throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
   }
-  ImportedMesh mesh = read_mesh_in_child(path, options, limits_for(path, options));
+  ImportedMesh mesh = read_mesh_in_child(path, options, limits_for(path, options.time_limit));
   check_imported(path, mesh, options.needs_solids);
   merge_cells(mesh);
   drop_long_names(mesh);

@@ -1,6 +1,6 @@
 /// @file main.cpp
 /// The program tetwarp-read: reads one mesh by VTK or Gmsh and sends it to the program that has
-/// started it.
+/// started it, or gives the points of a file new places.
 #include <cstdlib>
 
 #include "io/reader/mesh_readers.hpp"
@@ -8,5 +8,7 @@
 
 int main(int argc, char** argv) {
   // Without the exit handlers of the libraries, which may crash after a damaged file.
-  std::_Exit(tetwarp::send_mesh(argc, argv, tetwarp::read_foreign_mesh));
+  std::_Exit(tetwarp::send_result(
+      argc, argv,
+      {tetwarp::read_foreign_mesh, tetwarp::read_vtk_points, tetwarp::place_vtk_points}));
 }

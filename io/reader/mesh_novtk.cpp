@@ -12,6 +12,14 @@ ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions&) {
                 "convert to VTKHDF of type UnstructuredGrid");
 }
 
+std::vector<Point3> read_vtk_points(const std::string& path) {
+  return read_vtk_mesh(path, {}).mesh.rest_positions;
+}
+
+void place_vtk_points(const std::string& path, const std::string&, const std::string&) {
+  read_vtk_mesh(path, {});
+}
+
 ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options) {
   return read_vtk_mesh(path, options);
 }

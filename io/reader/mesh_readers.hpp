@@ -22,6 +22,15 @@ ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& opt
 /// are divided into triangles.
 ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options);
 
+/// All points of a file that VTK reads, in its order. Of .stl every triangle has points of its own.
+std::vector<Point3> read_vtk_points(const std::string& path);
+
+/// Writes a copy of such a file with other points and a point array `inside`, see
+/// place_points_in_child(). Cells and all arrays are kept where the format of the output has them.
+void place_vtk_points(const std::string& path,
+                      const std::string& numbers,
+                      const std::string& output);
+
 /// Reads a mesh by the library of its format. Most checks are left to import_mesh().
 ImportedMesh read_foreign_mesh(const std::string& path, const MeshImportOptions& options);
 

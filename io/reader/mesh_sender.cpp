@@ -65,29 +65,44 @@ std::string problem_of(const IoError& error) {
   const std::string names = IoError(error.file(), error.dataset(), "").what();
   return std::string(error.what()).substr(names.size());
 }
+
+/// Calls what the words ask for and sends its result.
+void answer(MessageWriter& message,
+            const std::vector<std::string>& words,
+            const ReaderCalls& calls) {
+  const std::string& path = words[0];
+  const std::string& what = words[2];
+  if (what == "points") {
+    const std::vector<Point3> points = calls.points(path);
+    message(ChildOutcome::result);
+    message(points);
+  } else if (what == "place") {
+    calls.place(path, words.at(3), words.at(4));
+    message(ChildOutcome::result);
+  } else {
+    MeshImportOptions options;
+    options.needs_solids = what == "solids";
+    if (words.size() > 3) options.displacement = words[3];
+    ImportedMesh mesh = calls.mesh(path, options);
+    message(ChildOutcome::result);
+    exchange_members(message, mesh);
+  }
+}
 }  // namespace
 
-int send_mesh(
-    int argc,
-    char** argv,
-    const std::function<ImportedMesh(const std::string&, const MeshImportOptions&)>& read) {
-  if (argc < 4 || argc > 5) {
+int send_result(int argc, char** argv, const ReaderCalls& calls) {
+  if (argc < 4 || argc > 6) {
     std::fputs("tetwarp-read is started by tetwarp, to read meshes of other programs\n", stderr);
     return 2;
   }
   if (!end_with_caller()) return 1;
   const double memory = std::atof(argv[2]);
-  MeshImportOptions options;
-  options.needs_solids = std::string(argv[3]) == "solids";
-  if (argc == 5) options.displacement = argv[4];
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_DATA, mapped_memory() + memory);
   std::FILE* const output = take_output();
   MessageWriter message(output);
   try {
-    ImportedMesh mesh = read(argv[1], options);
-    message(ChildOutcome::mesh);
-    exchange_members(message, mesh);
+    answer(message, {argv + 1, argv + argc}, calls);
   } catch (const IoError& error) {
     send_error(message, error.dataset(), problem_of(error));
   } catch (const std::bad_alloc&) {

@@ -1,20 +1,29 @@
 /// @file mesh_sender.hpp
-/// What tetwarp-read does around the reading: it limits itself, and sends the mesh or the error.
+/// What tetwarp-read does around the reading: it limits itself, and sends the result or the error.
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <tetwarp/mesh_import.hpp>
 
 namespace tetwarp {
 
-/// Reads the mesh that the arguments PATH MEMORY solids|triangles [DISPLACEMENT] tell, as
-/// read_mesh_in_child() gives them, and sends it to the standard output, where nothing else
-/// arrives. Limits the memory, leaves no core file, and is killed with the thread that started it.
+/// What the program does, each by the library of the file's format.
+struct ReaderCalls {
+  std::function<ImportedMesh(const std::string& path, const MeshImportOptions& options)> mesh;
+  std::function<std::vector<Point3>(const std::string& path)> points = {};
+  /// As of place_points_in_child().
+  std::function<void(
+      const std::string& path, const std::string& numbers, const std::string& output)>
+      place = {};
+};
+
+/// Does what the arguments tell, and sends the result to the standard output, where nothing else
+/// arrives: PATH MEMORY solids|triangles [DISPLACEMENT], PATH MEMORY points, or
+/// PATH MEMORY place NUMBERS OUTPUT, as the functions of mesh_child.hpp give them. Limits the
+/// memory, leaves no core file, and is killed with the thread that started it.
 /// @returns the exit code
-int send_mesh(
-    int argc,
-    char** argv,
-    const std::function<ImportedMesh(const std::string&, const MeshImportOptions&)>& read);
+int send_result(int argc, char** argv, const ReaderCalls& calls);
 
 }  // namespace tetwarp

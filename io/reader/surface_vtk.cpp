@@ -2,60 +2,25 @@
 /// Triangles of surfaces and of unstructured grids, read by VTK.
 #include <vtkCellData.h>
 #include <vtkCellTypes.h>
-#include <vtkDataSetReader.h>
 #include <vtkFieldData.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
-#include <vtkOBJReader.h>
-#include <vtkPLYReader.h>
 #include <vtkPointData.h>
 #include <vtkPointSet.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkSTLReader.h>
 #include <vtkSmartPointer.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkXMLPolyDataReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include <string>
 #include <tetwarp/error.hpp>
 
-#include "io/files/extension.hpp"
 #include "io/reader/mesh_readers.hpp"
 #include "io/reader/surface_seams.hpp"
-#include "io/reader/vtk_error_notes.hpp"
+#include "io/reader/vtk_point_set.hpp"
 
 namespace tetwarp {
 namespace {
-/// Reads a file. @throws IoError when there is nothing that VTK can read
-template <class Reader>
-vtkSmartPointer<vtkPointSet> output_of(const std::string& path, Reader& reader) {
-  const VtkErrorNotes notes(reader);
-  reader.SetFileName(path.c_str());
-  reader.Update();
-  vtkPointSet* const output = vtkPointSet::SafeDownCast(reader.GetOutputDataObject(0));
-  if (reader.GetErrorCode() == 0 && !notes.has_error() && output != nullptr &&
-      output->GetNumberOfPoints() > 0) {
-    return output;
-  }
-  throw IoError(path, "", "holds no surface that VTK can read: damaged, or of another kind");
-}
-
-vtkSmartPointer<vtkPointSet> read_point_set(const std::string& path) {
-  if (has_extension(path, ".stl")) {
-    const vtkNew<vtkSTLReader> reader;
-    reader->MergingOff();
-    return output_of(path, *reader);
-  }
-  if (has_extension(path, ".ply")) return output_of(path, *vtkNew<vtkPLYReader>());
-  if (has_extension(path, ".obj")) return output_of(path, *vtkNew<vtkOBJReader>());
-  if (has_extension(path, ".vtp")) return output_of(path, *vtkNew<vtkXMLPolyDataReader>());
-  if (has_extension(path, ".vtu")) return output_of(path, *vtkNew<vtkXMLUnstructuredGridReader>());
-  return output_of(path, *vtkNew<vtkDataSetReader>());
-}
-
 /// Cells of two dimensions as triangles; all others are counted.
 void add_triangles(const std::string& path, vtkPointSet& set, ImportedMesh& into) {
   const vtkNew<vtkGenericCell> cell;
@@ -95,7 +60,7 @@ void add_array_names(vtkFieldData& data, const std::string& noun, ImportedMesh& 
 }  // namespace
 
 ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions&) {
-  const vtkSmartPointer<vtkPointSet> set = read_point_set(path);
+  const vtkSmartPointer<vtkPointSet> set = read_vtk_point_set(path);
   ImportedMesh mesh;
   mesh.mesh.rest_positions.resize(static_cast<std::size_t>(set->GetNumberOfPoints()));
   for (std::size_t p = 0; p < mesh.mesh.rest_positions.size(); ++p) {

@@ -74,13 +74,13 @@ struct VolumeReadOptions {
   bool are_labels = false;
 };
 
-/// Reads the header of a volume file: VTKHDF ImageData or NIfTI, by its content. The array of a
-/// NIfTI file is called `values`; the steps of a series have times in seconds, where the header
-/// names a unit of time.
+/// Reads the header of a volume file: VTKHDF ImageData, NIfTI, NRRD or MetaImage, by its content.
+/// The array of the latter three is called `values`, and their grids are in RAS; the steps of a
+/// series have times in seconds, where the header names a unit of time.
 TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path,
                                                   const VolumeReadOptions& options = {});
 
-/// Reads an array of a volume file: VTKHDF ImageData or NIfTI.
+/// Reads an array of a volume file of these formats.
 /// @param array  its name; empty: VolumeHeader::active
 /// @param step   from 0, of a temporal file; a static file has step 0 only
 TETWARP_IO_EXPORT Volume read_volume(const std::string& path,
@@ -285,6 +285,7 @@ enum class FileKind {
   hdf5,             ///< any other HDF5 file, also a damaged one
   nifti,            ///< NIfTI-1 or NIfTI-2, plain or gzip; also either file of a pair
   analyze,          ///< Analyze 7.5, header or samples
+  image,            ///< NRRD (.nrrd, .nhdr) or MetaImage (.mha, .mhd)
   unknown
 };
 template <>
@@ -292,6 +293,9 @@ TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of();
 
 /// True for names of NIfTI images that can be written: .nii and .nii.gz.
 TETWARP_IO_EXPORT bool has_nifti_name(const std::string& path);
+
+/// True for names of NRRD files and MetaImages that can be written: .nrrd and .mha.
+TETWARP_IO_EXPORT bool has_image_name(const std::string& path);
 
 /// The kind of a file, from its content. Throws IoError only when the file cannot be opened.
 TETWARP_IO_EXPORT FileKind kind_of(const std::string& path);

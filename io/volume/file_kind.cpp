@@ -7,6 +7,7 @@
 #include "io/h5/h5.hpp"
 #include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_read.hpp"
+#include "io/image/image_volume.hpp"
 #include "io/nifti/nifti_header.hpp"
 
 namespace tetwarp {
@@ -42,6 +43,7 @@ FileKind kind_of(const std::string& path) {
   const NiftiStart start = read_nifti_start(header_path);
   if (start.fields) return FileKind::nifti;
   if (H5Fis_hdf5(path.c_str()) > 0) return hdf5_kind(path);
+  if (is_image(path)) return FileKind::image;
   return is_analyze(header_path, start) ? FileKind::analyze : FileKind::unknown;
 }
 

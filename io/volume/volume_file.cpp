@@ -6,6 +6,7 @@
 #include "io/h5/h5.hpp"
 #include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_read.hpp"
+#include "io/image/image_volume.hpp"
 #include "io/nifti/nifti_header.hpp"
 #include "io/nifti/nifti_volume.hpp"
 #include "io/volume/label_source.hpp"
@@ -20,8 +21,9 @@ bool is_nifti(const std::string& path) {
 
 VolumeHeader read_volume_header(const std::string& path, const VolumeReadOptions& options) {
   const h5::Silence silence;
-  VolumeHeader header =
-      is_nifti(path) ? read_nifti_volume_header(path, options) : read_vtkhdf_header(path);
+  VolumeHeader header = is_nifti(path)   ? read_nifti_volume_header(path, options)
+                        : is_image(path) ? read_image_volume_header(path)
+                                         : read_vtkhdf_header(path);
   for (ArrayHeader& array : header.arrays) {
     if (options.are_labels && !is_integer(array.type)) array.type = PixelType::int32;
   }
@@ -37,8 +39,9 @@ VolumeReader::VolumeReader(const std::string& path,
                            std::int64_t step,
                            const VolumeReadOptions& options) {
   const h5::Silence silence;
-  state_.reset(new State{is_nifti(path) ? open_nifti_source(path, array, step, options)
-                                        : open_vtkhdf_source(path, array, step)});
+  state_.reset(new State{is_nifti(path)   ? open_nifti_source(path, array, step, options)
+                         : is_image(path) ? open_image_source(path, array, step, options)
+                                          : open_vtkhdf_source(path, array, step)});
   std::unique_ptr<VolumeSource>& source = state_->source;
   if (options.are_labels && !is_integer(source->array().type)) {
     source = std::make_unique<LabelSource>(path, std::move(source));

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <tetwarp/io.hpp>
 
+#include "io/image/image_write.hpp"
 #include "io/nifti/nifti_write.hpp"
 #include "io/vtkhdf/vtkhdf_image.hpp"
 
@@ -138,6 +139,11 @@ BlockVolumeWriter::BlockVolumeWriter(const std::string& path,
   if (has_nifti_name(path)) {
     check_compression(path, options);
     state_.reset(new State{make_nifti_sink(path, grid, arrays, options, is_temporal)});
+    return;
+  }
+  if (has_image_name(path)) {
+    check_compression(path, options);
+    state_.reset(new State{make_image_sink(path, grid, arrays, options, is_temporal)});
     return;
   }
   const std::vector<Edges> edges =

@@ -115,8 +115,16 @@ def test_errors_name_the_argument(keywords, text, single_tet):
         tetwarp.displacement_field(points, cells, points, **keywords)
 
 
-def test_points_in_hexahedra_are_refused():
-    mesh = tetwarp.lattice_mesh(np.ones((4, 4, 4), np.uint8), cells=1, hexahedra=True)
+def test_points_in_hexahedra_have_the_owners_of_the_warp(volume):
+    mesh = tetwarp.lattice_mesh(volume, cells=3, hexahedra=True)
+    bent = tetwarp.deform(*mesh, kind="bend", amount=0.5)
+    owners = tetwarp.rasterize(bent, mesh.cells, reference=volume)
+    centers = volume.grid.points().reshape(-1, 3)
 
-    with pytest.raises(ValueError, match="cells: expected tetrahedra"):
-        tetwarp.transform_points([(1, 1, 1)], *mesh, mesh.points)
+    rest, found = tetwarp.transform_points(centers, *mesh, bent, inverse=True, reference=volume,
+                                           return_owners=True)
+
+    assert np.array_equal(found.reshape(owners.shape), owners)
+    field = tetwarp.displacement_field(*mesh, bent, reference=volume)
+    moved = (rest - centers).reshape(field.values.shape)
+    assert np.abs(moved - field.values)[field.mask].max() < 1e-3  # float32 of positions in 1e2 mm

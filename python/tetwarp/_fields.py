@@ -215,9 +215,9 @@ def transform_points(
     reference: Any = None,
     return_owners: bool = False,
 ) -> Any:
-    """Moves points with the tetrahedra that hold them.
+    """Moves points with the cells that hold them.
 
-    The owner of a point is the lowest-numbered tetrahedron whose closed shape contains it, decided
+    The owner of a point is the lowest-numbered cell whose closed shape contains it, decided
     in exact integers after positions are rounded to 2^-20 voxel of a grid, as in a warp: with the
     grid of a warp, ``inverse=True`` gives voxel centers the owners of that warp.
 
@@ -225,9 +225,9 @@ def transform_points(
     ----------
     points : (k, 3), in the rest mesh, or with `inverse` in the deformed one [world]
     rest, deformed : (n, 3) node positions before and after [world]
-    cells : (m, 4) tetrahedra
+    cells : (m, 4), (m, 8), or a pair of both, numbered tetrahedra first
     inverse : False: from rest to deformed; True: back
-    default_value : of all three numbers of points that no tetrahedron holds
+    default_value : of all three numbers of points that no cell holds
     reference : grid whose voxels set the rounding; None: at most
         2^-36 of the longest side of the mesh
     return_owners : also return the owners, (k,) int32, -1: none
@@ -239,7 +239,7 @@ def transform_points(
     Raises
     ------
     ValueError
-        naming the argument; hexahedra are refused.
+        naming the argument
 
     >>> tet = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1.0)])
     >>> transform_points([(0.25, 0.25, 0.25)], tet, [(0, 1, 2, 3)], 2 * tet)
@@ -249,19 +249,7 @@ def transform_points(
     start = nodes_of(rest, "rest")
     end = nodes_of(deformed, "deformed", len(start))
     tets, hexes = cells_of(cells, "cells", len(start))
-    if len(hexes):
-        raise ValueError("cells: expected tetrahedra (m, 4); points in hexahedra are not moved")
-    if inverse:
-        start, end = end, start
-    if reference is None:
-        low, high = start.min(axis=0), start.max(axis=0)
-        # A power of two, so that rounding keeps positions of few binary digits.
-        edge = 2.0 ** (np.ceil(np.log2(max(float((high - low).max()), 2.0**-500))) - 17)
-        grid = Grid((1, 1, 1), (edge,) * 3, tuple(low))
-    else:
-        grid = reference_grid(reference)
-    moved, owners = _core.map_points(where, grid._core(), start, tets, end)
-    value = number_of(default_value, "default_value")
-    if not np.isnan(value):
-        moved[owners < 0] = value
+    grid = None if reference is None else reference_grid(reference)._core()
+    moved, owners = _core.map_points(where, grid, start, tets, hexes, end, inverse)
+    moved[owners < 0] = number_of(default_value, "default_value")
     return (moved, owners) if return_owners else moved

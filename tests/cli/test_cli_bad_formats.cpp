@@ -24,9 +24,9 @@ struct BadFile {
 TEST(BadFormats, AreNamedWithARemedy) {
   const Scene scene;
   for (const BadFile& bad : std::vector<BadFile>{
-           {"a.nrrd", "NRRD0004\n", "a.nrrd: is a NRRD image, which is not read; convert it to NI"},
-           {"a.mha", "ObjectType = Image\n", "a.mha: is a MetaImage, which is not read; convert"},
-           {"a.mhd", "ObjectType = Image\n", "a.mhd: is a MetaImage, which is not read; convert"},
+           {"a.nrrd", "NRRD0004\n", "a.nrrd: sizes: is missing in its header"},
+           {"a.mha", "ObjectType = Image\n", "a.mha: ElementDataFile: is missing in its header"},
+           {"a.mhd", "ObjectType = Image\n", "a.mhd: ElementDataFile: is missing in its header"},
            {"a.dcm", std::string(128, '\0') + "DICM", "a.dcm: is a DICOM image, which is not read"},
            {"a.mgz", "\x1f\x8b?", "a.mgz: is a FreeSurfer image, which is not read; convert it"},
            {"a.vti", "<?xml version=\"1.0\"?>\n", "a.vti: is a VTK image, which is not read; con"},

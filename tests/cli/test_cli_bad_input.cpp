@@ -112,7 +112,7 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
            {warp_to("volume.vtkhdf"), "is also an input"},
            {warp_to("./folder.vtkhdf/../mesh.vtkhdf"), "is also an input"},
            {warp_to("folder.vtkhdf"), "is a folder"},
-           {warp_to("out.nrrd"), ".vtkhdf, .hdf, .h5, .nii or .nii.gz"},
+           {warp_to("out.vti"), ".vtkhdf, .hdf, .h5, .nii, .nii.gz, .nrrd or .mha"},
            {{"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--report",
              "volume.vtkhdf"},
             "is also an input"},
@@ -121,7 +121,7 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
            {{"warp", "volume.vtkhdf", "volume.vtkhdf", "mesh.vtkhdf", "-o", ".", "--steps", "0"},
             "is also an input"},
            {{"mesh", "volume.vtkhdf", "-o", "volume.vtkhdf"}, "is also an input"},
-           {{"export", "volume.vtkhdf", "-o", "out.nrrd"}, ".nii.gz"},
+           {{"export", "volume.vtkhdf", "-o", "out.vti"}, ".nii.gz"},
            {{"render", "volume.vtkhdf", "-o", "out.jpg"}, ".png"}}) {
     expect_refused(scene, refused, 1);
   }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "host/base/warp_backend.hpp"
+#include "host/warp/point_run.hpp"
 
 #include "host/warp/cuda/cell_raster_cuda.cuh"
 
@@ -33,6 +34,12 @@ std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan) {
   const DeviceScope scope(plan.options.device);
   const StageClocks clocks = plan.options.stage_times ? StageClocks::on : StageClocks::off;
   return std::make_unique<WarpPipeline<CudaExec>>(plan, CudaExec(plan.options.device, clocks));
+}
+
+void move_points_cuda(const PointPlan& plan, MappedPoints& result) {
+  const DeviceScope scope(plan.device);
+  CudaExec exec(plan.device, StageClocks::off);
+  move_points(exec, plan, result);
 }
 
 }  // namespace tetwarp

@@ -59,5 +59,5 @@ ImportedMesh read(const std::string& path, const MeshImportOptions& options) {
 int main(int argc, char** argv) {
   const std::string path = argc > 1 ? argv[1] : "";
   if (path == "truncated") return write(STDOUT_FILENO, "\0\1\2\3", 4) == 4 ? 0 : 1;
-  std::_Exit(tetwarp::send_mesh(argc, argv, tetwarp::read));
+  std::_Exit(tetwarp::send_result(argc, argv, {tetwarp::read}));
 }

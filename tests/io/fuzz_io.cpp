@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -21,6 +22,9 @@
 #include <new>
 #include <random>
 #include <string>
+#include <tetwarp/point_file.hpp>
+#include <tetwarp/transform_file.hpp>
+#include <utility>
 #include <vector>
 
 #include "tests/io/fuzz_bytes.hpp"
@@ -87,12 +91,45 @@ void write_seeds(const test::ScratchFolder& folder) {
   }
   series.finish();
   test::write_contact_seeds(folder);
+  for (const std::string& name :
+       std::vector<std::string>{"i.nrrd", "packed.nrrd", "i.mha", "packed.mha"}) {
+    BlockVolumeWriter image(folder / name, b.grid, {{b.name, b.type, b.components}},
+                            {.compress = name.starts_with("packed") ? 3 : 0}, false);
+    image.write(0, {{0, 0, 0}, b.grid.dims}, b.data.data());
+    image.finish();
+  }
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name, std::ios::binary) << text;
+  };
+  write("p.csv", "label,x,y,z\n\"a, b\",1,2.5,-3e1\nc,4,5,6\n");
+  write("p.fcsv", "# CoordinateSystem = LPS\n# columns = id,x,y,z,ow\n1,1,2,3,0\n2,4,5,6,0\n");
+  write(
+      "p.json",
+      R"({"markups": [{"coordinateSystem": "LPS", "controlPoints": [{"position": [1, 2, 3]}]}]})");
+  write("t.tfm",
+        "#Insight Transform File V1.0\nTransform: Euler3DTransform_double_3_3\n"
+        "Parameters: 0 0 0.2 5 0 0\nFixedParameters: 0 0 0 0\n");
+  std::string matlab;
+  for (const auto& [variable, count] :
+       {std::pair("AffineTransform_double_3_3", 12), {"fixed", 3}}) {
+    const std::int32_t head[5] = {0, count, 1, 0,
+                                  static_cast<std::int32_t>(std::strlen(variable)) + 1};
+    matlab.append(reinterpret_cast<const char*>(head), sizeof head);
+    matlab.append(variable, std::strlen(variable) + 1)
+        .append(static_cast<std::size_t>(8 * count), '\0');
+  }
+  write("t.mat", matlab);
 }
+
+/// Formats that are chosen by the end of a name, and NRRD.
+constexpr std::array<const char*, 9> named_seeds = {
+    "i.nrrd", "packed.nrrd", "i.mha", "packed.mha", "p.csv", "p.fcsv", "p.json", "t.tfm", "t.mat"};
 
 std::vector<std::string> seed_names() {
   std::vector<std::string> names = {"volume", "packed",   "temporal", "mesh",    "moving",
                                     "v.nii",  "v.nii.gz", "v2.nii",   "s.nii.gz"};
   names.insert(names.end(), test::contact_seeds.begin(), test::contact_seeds.end());
+  names.insert(names.end(), named_seeds.begin(), named_seeds.end());
   return names;
 }
 
@@ -142,19 +179,36 @@ bool read_all(const std::string& path) {
   return is_volume || is_mesh || is_contact || reads([&] { read_nifti(path); });
 }
 
+/// Reads a file whose name ends as the format wants. @returns true when one reader succeeded
+bool read_named(const std::string& path, const std::string& extension) {
+  const std::string named = path + extension;
+  std::filesystem::copy_file(path, named, std::filesystem::copy_options::overwrite_existing);
+  const bool is_points = reads([&] {
+    const PointFile file(named);
+    const std::vector<std::uint8_t> inside(file.points().size(), 1);
+    file.write(path + "-moved" + extension, file.points(), inside);
+  });
+  const bool is_transform = reads([&] { read_transform(named); });
+  return is_points || is_transform || read_all(named);
+}
+
 /// The file number `index` of this seed: the same in every run.
-void make_file(const test::ScratchFolder& folder, std::uint64_t seed, std::int64_t index) {
+/// @returns the end of its name, where the format is chosen by it
+std::string make_file(const test::ScratchFolder& folder, std::uint64_t seed, std::int64_t index) {
   test::Random random(seed, static_cast<std::uint64_t>(index));
   static const std::vector<std::string> seeds = seed_names();
   const std::string& name = seeds[random.below(seeds.size())];
   std::filesystem::copy_file(folder / name, folder / "damaged",
                              std::filesystem::copy_options::overwrite_existing);
-  const bool is_hdf5 = name.find(".nii") == std::string::npos;
+  const bool is_named =
+      std::find(named_seeds.begin(), named_seeds.end(), name) != named_seeds.end();
+  const bool is_hdf5 = name.find(".nii") == std::string::npos && !is_named;
   if (is_hdf5 && random.below(3) != 0) {
     test::damage_values(folder / "damaged", random);
   } else {
     damage_file(folder / "damaged", random);
   }
+  return is_named ? name.substr(name.rfind('.')) : "";
 }
 
 /// Runs in a child: files from `first` on.
@@ -170,8 +224,10 @@ void make_file(const test::ScratchFolder& folder, std::uint64_t seed, std::int64
     alarm(seconds_per_file);
     ++counts.files;
     try {
-      make_file(folder, seed, index);
-      ++(read_all(folder / "damaged") ? counts.read : counts.rejected);
+      const std::string extension = make_file(folder, seed, index);
+      const bool is_read = extension.empty() ? read_all(folder / "damaged")
+                                             : read_named(folder / "damaged", extension);
+      ++(is_read ? counts.read : counts.rejected);
     } catch (const std::exception& error) {
       std::fprintf(stderr, "%s\n", error.what());
       _exit(wrong_exception);

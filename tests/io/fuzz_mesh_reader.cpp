@@ -61,5 +61,5 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) {
     std::signal(signal, on_crash);
   }
-  std::_Exit(tetwarp::send_mesh(argc, argv, tetwarp::read_foreign_mesh));
+  std::_Exit(tetwarp::send_result(argc, argv, {tetwarp::read_foreign_mesh}));
 }

@@ -64,9 +64,10 @@ void check_hdf_name(const std::string& output) {
 }
 
 void check_volume_name(const std::string& output) {
-  if (has_nifti_name(output)) return;
+  if (has_nifti_name(output) || has_image_name(output)) return;
   if (!has_hdf_extension(output)) {
-    throw IoError(output, "", "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii or .nii.gz");
+    throw IoError(output, "",
+                  "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii, .nii.gz, .nrrd or .mha");
   }
 }
 
@@ -84,10 +85,6 @@ constexpr const char* to_vtu =
 constexpr const char* to_mesh =
     "make a mesh of tetrahedra of it: tetwarp mesh --from-surface, or Gmsh";
 constexpr ForeignFormat foreign_formats[] = {
-    {".nrrd", "NRRD image", to_nifti},
-    {".nhdr", "NRRD image", to_nifti},
-    {".mha", "MetaImage", to_nifti},
-    {".mhd", "MetaImage", to_nifti},
     {".dcm", "DICOM image", to_nifti},
     {".mgz", "FreeSurfer image", to_nifti},
     {".mgh", "FreeSurfer image", to_nifti},
@@ -153,7 +150,7 @@ void check_kind(const std::string& path, FileKind expected, const std::string& r
 
 void check_volume(const std::string& path, const std::string& remedy) {
   const FileKind kind = sound_kind_of(path);
-  if (kind != FileKind::volume && kind != FileKind::nifti) {
+  if (kind != FileKind::volume && kind != FileKind::nifti && kind != FileKind::image) {
     refuse_kind(path, kind, "volume", remedy);
   }
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "host/cli/common/declare.hpp"
 #include "host/warp/transform_checks.hpp"
 
 namespace tetwarp::cli {
@@ -22,6 +23,29 @@ void check_named(const std::string& path,
                             quantity < Quantity::tensor ? "--vectors" : "--tensors"));
 }
 }  // namespace
+
+std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
+                                       const WarpArguments& arguments,
+                                       const std::string& path) {
+  std::vector<ArrayHeader> chosen;
+  std::vector<std::string> names;
+  for (const ArrayHeader& array : header.arrays) {
+    names.push_back(array.name);
+    if (arguments.arrays.empty() && !array.name.starts_with("tetwarp_")) chosen.push_back(array);
+  }
+  for (const std::string& name : arguments.arrays) {
+    const auto is_named = [&](const ArrayHeader& array) { return array.name == name; };
+    const auto found = std::find_if(header.arrays.begin(), header.arrays.end(), is_named);
+    if (found == header.arrays.end()) {
+      throw IoError(path, name, "no such array; the file has " + listed(names));
+    }
+    if (std::find_if(chosen.begin(), chosen.end(), is_named) == chosen.end()) {
+      chosen.push_back(*found);
+    }
+  }
+  if (chosen.empty()) throw IoError(path, "", "holds no array to warp");
+  return chosen;
+}
 
 void check_arrays(const std::string& path,
                   const Grid& grid,

@@ -1,5 +1,5 @@
 /// @file array_checks.hpp
-/// Checks of the arrays of a volume against the arguments of a warp.
+/// The arrays of a volume to warp, and checks of them against the arguments of a warp.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,6 +9,12 @@
 #include "host/cli/job/warp_arguments.hpp"
 
 namespace tetwarp::cli {
+
+/// The arrays to warp: those of --array, else all except extra outputs of an earlier warp. Throws
+/// IoError about `path` when there is none.
+std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
+                                       const WarpArguments& arguments,
+                                       const std::string& path);
 
 /// Checks the arrays of a volume file: --vectors and --tensors name some of them, their types fit
 /// the options, and their names are not those of extra outputs. Throws IoError.

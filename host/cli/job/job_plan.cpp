@@ -81,30 +81,6 @@ void check_axes_turn(const JobPlan& plan, const WarpArguments& arguments) {
       "in NIfTI images; leave it out");
 }
 
-/// The arrays to warp: those of --array, else all except extra outputs of an earlier warp.
-std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
-                                       const WarpArguments& arguments,
-                                       const std::string& path) {
-  std::vector<ArrayHeader> chosen;
-  std::vector<std::string> names;
-  for (const ArrayHeader& array : header.arrays) {
-    names.push_back(array.name);
-    if (arguments.arrays.empty() && !array.name.starts_with("tetwarp_")) chosen.push_back(array);
-  }
-  for (const std::string& name : arguments.arrays) {
-    const auto is_named = [&](const ArrayHeader& array) { return array.name == name; };
-    const auto found = std::find_if(header.arrays.begin(), header.arrays.end(), is_named);
-    if (found == header.arrays.end()) {
-      throw IoError(path, name, "no such array; the file has " + listed(names));
-    }
-    if (std::find_if(chosen.begin(), chosen.end(), is_named) == chosen.end()) {
-      chosen.push_back(*found);
-    }
-  }
-  if (chosen.empty()) throw IoError(path, "", "holds no array to warp");
-  return chosen;
-}
-
 /// Checks that the volume has the last step that is to be warped.
 void check_volume_step(const std::string& path,
                        const VolumeHeader& header,

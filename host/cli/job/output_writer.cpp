@@ -25,6 +25,10 @@ ArrayHeader nifti_array(ArrayHeader array, const std::optional<Axes>& axes) {
   return array;
 }
 
+bool holds_one_array(const std::string& path) {
+  return has_nifti_name(path) || has_image_name(path);
+}
+
 SplitName split_name(const std::string& path) {
   const std::string whole = ".nii.gz";
   const std::string extension = has_extension(path, whole)
@@ -36,7 +40,7 @@ SplitName split_name(const std::string& path) {
 std::vector<std::string> files_of_output(const std::string& output,
                                          const std::vector<ArrayHeader>& arrays) {
   std::vector<std::string> files = {output};
-  if (!has_nifti_name(output)) return files;
+  if (!holds_one_array(output)) return files;
   const SplitName name = split_name(output);
   for (std::size_t a = 1; a < arrays.size(); ++a) {
     const std::string prefix = "tetwarp_";
@@ -56,7 +60,7 @@ OutputWriter::OutputWriter(const std::string& output,
                            std::size_t changing,
                            ChunkShape chunks)
     : changing_(std::min(changing, arrays.size())) {
-  if (!has_nifti_name(output)) {
+  if (!holds_one_array(output)) {
     files_.emplace_back(output, grid, arrays, options, is_temporal, chunks);
     return;
   }

@@ -29,6 +29,9 @@ struct SplitName {
 };
 SplitName split_name(const std::string& path);
 
+/// True for names of formats of one array per file: NIfTI, NRRD, MetaImage.
+bool holds_one_array(const std::string& path);
+
 /// The files that hold the arrays of an output. Of several NIfTI images the first one has the name
 /// of the output, NAME.nii.gz, and the others NAME_ARRAY.nii.gz without `tetwarp_`.
 std::vector<std::string> files_of_output(const std::string& output,

@@ -108,6 +108,9 @@ void declare_grid_options(CLI::App& app, GridChoice& grid) {
                  "output grid: the source's, the deformed mesh's box on it, or a volume's [" +
                      grid.base + "]")
       ->type_name("same|bounds|FILE");
+  app.add_option("--like", grid.base, "as --grid FILE: onto the grid of a volume")
+      ->type_name("FILE")
+      ->excludes("--grid");
   add_numbers(app, "--dims", grid.dims, "NI,NJ,NK",
               "voxels of the output grid; alone it keeps the base's box [--spacing]");
   add_numbers(app, "--origin", grid.origin, "X,Y,Z", "center of its first voxel");
@@ -136,13 +139,14 @@ void declare_outside_options(CLI::App& app, WarpOptions& warp) {
 
 namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
-  app.add_option(
-         "FILES", arguments.files,
-         "one or more volumes (VTKHDF, NIfTI), then the mesh that warps them (VTKHDF, .msh, "
-         ".vtu, .vtk)")
+  app.add_option("FILES", arguments.files,
+                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage), then the mesh that warps "
+                 "them (VTKHDF, .msh, "
+                 ".vtu, .vtk), or one volume and a displacement field or an affine "
+                 "transform of ITK (.tfm, .txt, .mat)")
       ->type_name("");
   app.add_option("-o,--output", arguments.output,
-                 "file to write, .vtkhdf or .nii.gz; for several volumes a folder")
+                 "file to write, .vtkhdf, .nii.gz, .nrrd or .mha; for several volumes a folder")
       ->type_name("OUT");
   app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
       ->allow_extra_args(false)
@@ -162,7 +166,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
   add_axes(
       app, arguments.axes,
       "axes of meshes in .msh, .vtu and .vtk and of vectors and tensors in NIfTI images; lps is "
-      "turned to ras [ras]");
+      "turned to ras [ras; of a displacement field what its intent tells]");
   app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
   app.add_option("--rest-step", arguments.mesh.rest_step,

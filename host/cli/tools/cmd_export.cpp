@@ -38,8 +38,9 @@ std::string axes_text(const ArrayHeader& array) {
 
 int run_export(const ExportArguments& arguments) {
   check_volume(arguments.input, "usage: tetwarp export VOLUME -o FILE.nii.gz");
-  if (!has_nifti_name(arguments.output)) {
-    throw IoError(arguments.output, "", "the name of a NIfTI image ends in .nii or .nii.gz");
+  if (!holds_one_array(arguments.output)) {
+    throw IoError(arguments.output, "",
+                  "the name of an image to export ends in .nii, .nii.gz, .nrrd or .mha");
   }
   check_output_file(arguments.output, {arguments.input});
   const std::vector<double> times = read_volume_header(arguments.input).times;
@@ -85,7 +86,8 @@ void add_export_command(CLI::App& app, Run& run) {
   command->add_option("VOLUME", arguments->input, "volume, VTKHDF or NIfTI")
       ->required()
       ->type_name("");
-  command->add_option("-o,--output", arguments->output, "image to write, .nii or .nii.gz")
+  command
+      ->add_option("-o,--output", arguments->output, "image to write, .nii, .nii.gz, .nrrd or .mha")
       ->required()
       ->type_name("FILE");
   command->add_option("--array", arguments->array, "array to write [active scalars]")

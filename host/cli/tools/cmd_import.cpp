@@ -36,9 +36,16 @@ std::string components_text(const ArrayHeader& array, const ImportArguments& arg
 }
 
 void run_volume_import(const ImportArguments& arguments) {
-  check_kind(arguments.input, FileKind::nifti,
-             "usage: tetwarp import FILE -o VOLUME, with a NIfTI image or a mesh named .msh, .vtu "
-             "or .vtk");
+  if (kind_of(arguments.input) != FileKind::image) {
+    check_kind(
+        arguments.input, FileKind::nifti,
+        "usage: tetwarp import FILE -o VOLUME, with a NIfTI, NRRD or MetaImage file or a mesh "
+        "named .msh, .vtu or .vtk");
+  } else if (arguments.axes) {
+    throw IoError(
+        arguments.input, "",
+        "keeps its components as they are; leave out --axes, which is for NIfTI and meshes");
+  }
   if (arguments.mesh.displacement) {
     throw IoError(arguments.input, "", "is not a mesh; leave out --displacement");
   }
@@ -107,7 +114,8 @@ void add_import_command(CLI::App& app, Run& run) {
       "  tetwarp import skull.msh -o skull.vtkhdf --displacement u\n");
   command
       ->add_option("FILE", arguments->input,
-                   "NIfTI image, .nii, .nii.gz or .hdr; or mesh of tetrahedra and hexahedra: "
+                   "image, .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd; or mesh of tetrahedra "
+                   "and hexahedra: "
                    "Gmsh's .msh 2 and 4, "
                    "VTK's .vtu and .vtk")
       ->required()

@@ -61,20 +61,24 @@ void add_range(Json& json, const Volume& volume) {
 
 Json volume_json(const InfoArguments& arguments) {
   const VolumeHeader header = read_volume_header(arguments.file);
-  const bool is_nifti = kind_of(arguments.file) == FileKind::nifti;
-  Json json{{"kind", is_nifti ? "nifti" : "volume"},
+  const FileKind kind = kind_of(arguments.file);
+  const bool has_one_array = kind == FileKind::nifti || kind == FileKind::image;
+  const char* const word = kind == FileKind::nifti   ? "nifti"
+                           : kind == FileKind::image ? "image"
+                                                     : "volume";
+  Json json{{"kind", word},
             {"dims", header.grid.dims},
             {"origin", header.grid.origin},
             {"spacing", header.grid.spacing},
             {"direction", header.grid.direction}};
   json.update(times_json(header.times));
-  if (is_nifti) {
+  if (has_one_array) {
     const ArrayHeader& array = header.arrays.front();
     json["type"] = name_of(array.type);
     json["components"] = array.components;
     if (arguments.stats) add_range(json, read_volume(arguments.file));
   }
-  for (const ArrayHeader& array : is_nifti ? std::vector<ArrayHeader>() : header.arrays) {
+  for (const ArrayHeader& array : has_one_array ? std::vector<ArrayHeader>() : header.arrays) {
     Json entry{{"type", name_of(array.type)}, {"components", array.components}};
     if (arguments.stats) add_range(entry, read_volume(arguments.file, array.name));
     json["arrays"][array.name] = entry;
@@ -170,6 +174,7 @@ int run_info(const InfoArguments& arguments) {
   switch (kind) {
     case FileKind::volume:
     case FileKind::nifti:
+    case FileKind::image:
       json = volume_json(arguments);
       break;
     case FileKind::mesh:

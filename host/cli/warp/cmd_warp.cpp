@@ -10,6 +10,7 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/ranks.hpp"
 #include "host/cli/warp/batch.hpp"
+#include "host/cli/warp/transform_job.hpp"
 #include "host/cli/warp/warp_job.hpp"
 
 namespace tetwarp::cli {
@@ -21,7 +22,11 @@ int device_count() {
   return count;
 }
 
-int run_warp(WarpArguments arguments) {
+int run_warp(WarpArguments arguments, const CLI::App& command) {
+  if (names_transform(arguments)) {
+    run_transform_job(arguments, command);
+    return 0;
+  }
   Ranks ranks = Ranks::start();
   const int devices = ranks.count() > 1 ? device_count() : 0;
   if (devices > 1) arguments.warp.device = launched_local_rank() % devices;
@@ -40,12 +45,15 @@ int run_warp(WarpArguments arguments) {
 void add_warp_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<WarpArguments>();
   CLI::App* command = add_subcommand(
-      app, "warp", "Warp volumes by a deforming mesh", "VOLUME... MESH -o OUT [options]",
+      app, "warp",
+      "Warp volumes by a deforming mesh, or by a displacement field or affine transform",
+      "VOLUME... MESH|TRANSFORM -o OUT [options]",
       "  tetwarp warp ct.nii.gz mesh.vtu -o warped.nii.gz\n"
       "  tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf "
       "--steps 0:10:2 --outputs mask --resume\n"
       "  tetwarp warp atlas.nii.gz mesh.vtkhdf -o atlas_warped.nii.gz "
       "--filter labels\n"
+      "  tetwarp warp ct.nii.gz 1Warp.nii.gz -o warped.nii.gz --like fixed.nii.gz\n"
       "  tetwarp warp --batch jobs.json --compress 1\n"
       "  tetwarp warp large.vtkhdf mesh.vtkhdf -o warped.vtkhdf --memory 4G\n"
       "  mpirun -n 4 tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf\n");
@@ -56,7 +64,8 @@ void add_warp_command(CLI::App& app, Run& run) {
       throw CLI::ValidationError("--batch", "runs without mpirun; start one mpirun for each job");
     }
     run = [arguments, command] {
-      return arguments->batch.empty() ? run_warp(*arguments) : run_batch(*arguments, *command);
+      return arguments->batch.empty() ? run_warp(*arguments, *command)
+                                      : run_batch(*arguments, *command);
     };
   });
 }

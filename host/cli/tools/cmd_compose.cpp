@@ -1,0 +1,200 @@
+/// @file cmd_compose.cpp
+/// The subcommand compose.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <vector>
+
+#include "host/base/parallel.hpp"
+#include "host/cli/common/axes_option.hpp"
+#include "host/cli/common/commands.hpp"
+#include "host/cli/common/declare.hpp"
+#include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/interrupt.hpp"
+#include "host/cli/job/output_writer.hpp"
+#include "host/cli/job/step_selection.hpp"
+#include "host/cli/tools/transform_chain.hpp"
+
+namespace tetwarp::cli {
+namespace {
+struct ComposeArguments {
+  std::vector<std::string> words;
+  std::string output;
+  std::string like;
+  StepSelection steps;
+  MeshReadOptions mesh;
+  std::optional<Axes> axes;
+  int threads = 0;
+  int compress = 0;
+  bool quiet = false;
+};
+
+std::vector<ChainLink> read_links(const ComposeArguments& arguments) {
+  std::vector<ChainLink> links;
+  for (const std::string& word : arguments.words) {
+    links.emplace_back(word, arguments.mesh, arguments.axes);
+  }
+  return links;
+}
+
+/// Those of the meshes with several steps, which must have equally many.
+std::vector<std::int64_t> steps_of(const ComposeArguments& arguments,
+                                   const std::vector<ChainLink>& links) {
+  std::int64_t count = 1;
+  for (const ChainLink& link : links) {
+    if (link.step_count() == 1) continue;
+    if (count > 1 && link.step_count() != count) {
+      throw IoError(link.path(), "",
+                    fmt::format("has {} steps, another mesh has {}", link.step_count(), count));
+    }
+    count = link.step_count();
+  }
+  return arguments.steps.of(count);
+}
+
+/// The displacements of a step, slice by slice of the grid.
+Volume composed(const ComposeArguments& arguments,
+                const std::vector<ChainLink>& links,
+                std::int64_t step,
+                const Grid& grid,
+                ChainNotes& notes) {
+  Volume field = make_volume(grid, PixelType::float32, 3, "tetwarp_displacement");
+  const std::span<float> numbers = field.samples<float>();
+  const std::int64_t slice = grid.dims[0] * grid.dims[1];
+  const std::int64_t part = std::max<std::int64_t>(1, (std::int64_t{1} << 22) / slice);
+  std::size_t n = 0;
+  for (std::int64_t begin = 0; begin < grid.dims[2]; begin += part) {
+    std::vector<Point3> voxels;
+    for (std::int64_t k = begin; k < std::min(begin + part, grid.dims[2]); ++k) {
+      for (std::int64_t v = 0; v < slice; ++v) {
+        voxels.push_back(
+            grid.world_of({static_cast<double>(v % grid.dims[0]),
+                           static_cast<double>(v / grid.dims[0]), static_cast<double>(k)}));
+      }
+    }
+    std::vector<Point3> points = voxels;
+    for (auto link = links.rbegin(); link != links.rend(); ++link) {
+      link->apply(step, arguments.threads, points, notes);
+      stop_if_interrupted();
+    }
+    for (std::size_t v = 0; v < voxels.size(); ++v) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        numbers[n++] = static_cast<float>(points[v][axis] - voxels[v][axis]);
+      }
+    }
+  }
+  return field;
+}
+
+void print_notes(const std::string& output, const Grid& grid, const ChainNotes& notes) {
+  if (notes.outside > 0) {
+    fmt::print(stderr,
+               "tetwarp: {}: {} of {} positions were in no cell of a mesh and kept their "
+               "place there\n",
+               output, notes.outside, grid.voxel_count());
+  }
+  if (notes.not_inverted > 0) {
+    fmt::print(stderr,
+               "tetwarp: {}: {} of {} positions have no inverse of the field: it folds or "
+               "leaves its grid there\n",
+               output, notes.not_inverted, grid.voxel_count());
+  }
+}
+
+int run_compose(const ComposeArguments& arguments) {
+  check_volume_name(arguments.output);
+  check_volume(arguments.like, "--like takes the grid of a volume");
+  const Grid grid = read_volume_header(arguments.like).grid;
+  const std::vector<ChainLink> links = read_links(arguments);
+  const std::vector<std::int64_t> steps = steps_of(arguments, links);
+  std::vector<std::string> inputs{arguments.like};
+  for (const ChainLink& link : links) inputs.push_back(link.path());
+  std::vector<std::string> names;
+  for (const std::int64_t step : steps) {
+    const SplitName name = split_name(arguments.output);
+    names.push_back(steps.size() == 1 ? arguments.output
+                                      : fmt::format("{}_{:04}{}", name.stem, step, name.extension));
+    check_output_file(names.back(), inputs);
+  }
+  const InterruptFlag flag;
+  const ArrayHeader array{.name = "tetwarp_displacement", .components = 3, .is_itk_field = true};
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    ChainNotes notes;
+    const Volume field = composed(arguments, links, steps[s], grid, notes);
+    OutputWriter writer(names[s], grid, {array}, {.compress = arguments.compress}, false, 1,
+                        ChunkShape::rows);
+    writer.write(0, {{0, 0, 0}, grid.dims}, field.data.data());
+    writer.finish();
+    print_notes(names[s], grid, notes);
+    if (has_nifti_name(names[s]) && itk_components(grid) == 2) {
+      fmt::print(stderr, "tetwarp: {}: {}\n", names[s], itk_slice_note);
+    }
+    if (arguments.quiet) continue;
+    const bool inverts = std::any_of(links.begin(), links.end(), [](const ChainLink& link) {
+      return link.is_inverse() && link.affine() == nullptr && link.step_count() == 1;
+    });
+    fmt::print(
+        "{} transforms on {} x {} x {} voxels{}: {}\n", links.size(), grid.dims[0], grid.dims[1],
+        grid.dims[2],
+        inverts ? fmt::format(", inverse of fields within {:.2g}", notes.largest_residual) : "",
+        names[s]);
+  }
+  return 0;
+}
+}  // namespace
+
+void add_compose_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<ComposeArguments>();
+  CLI::App* command = add_subcommand(
+      app, "compose", "Join meshes, displacement fields and affine transforms to one field",
+      "A B^-1 C... -o FIELD --like VOLUME [options]",
+      "  tetwarp compose mesh.vtkhdf affine.tfm -o field.nii.gz --like fixed.nii.gz --steps -1\n"
+      "  tetwarp warp ct.nii.gz field.nii.gz -o warped.nii.gz --like fixed.nii.gz\n"
+      "An image warped by the field is the image warped by A, then by the inverse of B, then by "
+      "C,\ninterpolated once.\n");
+  command
+      ->add_option("FILES", arguments->words,
+                   "meshes, displacement fields and affine transforms as of tetwarp warp, in the "
+                   "order in which they are applied to an image; ^-1 behind a name is its inverse")
+      ->required()
+      ->type_name("");
+  command->add_option("-o,--output", arguments->output, "field to write, .nii.gz or .vtkhdf")
+      ->required()
+      ->type_name("FIELD");
+  command->add_option("--like", arguments->like, "volume whose grid the field gets")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option_function<std::string>(
+          "--steps",
+          [arguments](const std::string& text) {
+            try {
+              arguments->steps = StepSelection(text);
+            } catch (const std::invalid_argument& error) {
+              throw CLI::ValidationError("--steps", error.what());
+            }
+          },
+          "steps of the meshes: numbers and half-open slices, e.g. 0:10:2 or -1 [all]")
+      ->type_name("LIST");
+  add_axes(*command, arguments->axes,
+           "axes of meshes in .msh, .vtu and .vtk, and of the components of fields; lps is turned "
+           "to ras [ras; of fields what their intent tells]");
+  command->add_option("--threads", arguments->threads, "threads, 0 for all cores [0]")
+      ->check(between(0, max_threads))
+      ->type_name("N");
+  command
+      ->add_option("--compress", arguments->compress, "deflate level, 0 for none [0; of .nii.gz 6]")
+      ->check(between(0, 9))
+      ->type_name("L");
+  add_quiet(*command, arguments->quiet);
+  command->callback([arguments, &run] { run = [arguments] { return run_compose(*arguments); }; });
+}
+
+}  // namespace tetwarp::cli

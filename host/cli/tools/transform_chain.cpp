@@ -1,0 +1,126 @@
+/// @file transform_chain.cpp
+/// Applies one transform to points, forward or back.
+#include "host/cli/tools/transform_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <tetwarp/map_points.hpp>
+#include <utility>
+
+#include "host/base/point3.hpp"
+#include "host/cli/common/file_checks.hpp"
+
+namespace tetwarp::cli {
+namespace {
+constexpr std::string_view inverse_mark = "^-1";
+
+/// x with x + u(x) = y, by x <- y - u(x).
+void invert_field(const Transform& field, std::vector<Point3>& points, ChainNotes& notes) {
+  constexpr int most_steps = 100;
+  const std::vector<Point3> target = points;
+  double step = 0.1;  // of the largest spacing: a residual beyond it is no inverse
+  const Grid& grid = std::get<DisplacementField>(field).grid;
+  const double bound = step * *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  std::vector<double> residual(points.size());
+  for (int n = 0; n < most_steps; ++n) {
+    const std::vector<Point3> there = transformed(field, points);
+    double largest = 0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const Point3 missing = minus(target[p], there[p]);
+      residual[p] = norm(missing);
+      largest = std::max(largest, residual[p]);
+      points[p] = plus(points[p], missing);
+    }
+    if (largest < 1e-6 * bound) break;
+  }
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (residual[p] <= bound) {
+      notes.largest_residual = std::max(notes.largest_residual, residual[p]);
+    } else {
+      ++notes.not_inverted;
+    }
+  }
+}
+}  // namespace
+
+AffineTransform inverse_of(const AffineTransform& affine) {
+  const std::array<double, 9>& m = affine.matrix;
+  AffineTransform inverse;
+  double determinant = 0;
+  for (std::size_t row = 0; row < 3; ++row) {
+    const std::size_t r1 = (row + 1) % 3, r2 = (row + 2) % 3;
+    for (std::size_t column = 0; column < 3; ++column) {
+      const std::size_t c1 = (column + 1) % 3, c2 = (column + 2) % 3;
+      inverse.matrix[3 * column + row] =
+          m[3 * r1 + c1] * m[3 * r2 + c2] - m[3 * r1 + c2] * m[3 * r2 + c1];
+      if (row == 0) determinant += m[column] * inverse.matrix[3 * column];
+    }
+  }
+  if (!(std::abs(determinant) > 0)) {
+    throw std::invalid_argument("its matrix is singular: it has no inverse");
+  }
+  for (double& entry : inverse.matrix) entry /= determinant;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      inverse.offset[row] -= inverse.matrix[3 * row + n] * affine.offset[n];
+    }
+  }
+  return inverse;
+}
+
+ChainLink::ChainLink(const std::string& word,
+                     const MeshReadOptions& mesh,
+                     const std::optional<Axes>& axes)
+    : path_(word), is_inverse_(word.ends_with(inverse_mark)) {
+  if (is_inverse_) path_.resize(path_.size() - inverse_mark.size());
+  if (kind_of(path_) != FileKind::mesh && is_transform_file(path_)) {
+    Transform transform = read_transform(path_, axes).transform;
+    try {
+      if (const auto* const affine = std::get_if<AffineTransform>(&transform);
+          affine != nullptr && is_inverse_) {
+        transform = inverse_of(*affine);
+      }
+    } catch (const std::invalid_argument& error) {
+      throw IoError(path_, "", error.what());
+    }
+    what_ = std::move(transform);
+    return;
+  }
+  check_mesh(path_, "expected a mesh, a displacement field or an affine transform of ITK");
+  MeshReadOptions options = mesh;
+  if (kind_of(path_) != FileKind::mesh) options.import.axes = axes.value_or(Axes::ras);
+  what_.emplace<MeshReader>(path_, options);
+}
+
+std::int64_t ChainLink::step_count() const {
+  const auto* const mesh = std::get_if<MeshReader>(&what_);
+  return mesh == nullptr ? 1 : std::ssize(mesh->header().times);
+}
+
+const AffineTransform* ChainLink::affine() const {
+  const auto* const transform = std::get_if<Transform>(&what_);
+  return transform == nullptr ? nullptr : std::get_if<AffineTransform>(transform);
+}
+
+void ChainLink::apply(std::int64_t step,
+                      int threads,
+                      std::vector<Point3>& points,
+                      ChainNotes& notes) const {
+  if (const auto* const mesh = std::get_if<MeshReader>(&what_)) {
+    MappedPoints mapped = map_points(
+        mesh->mesh(), mesh->read_step(step_count() == 1 ? 0 : step), std::move(points),
+        {.inverse = !is_inverse_, .threads = threads});  // a warp samples where material came from
+    notes.outside += mapped.outside;
+    points = std::move(mapped.points);
+    return;
+  }
+  const Transform& transform = std::get<Transform>(what_);
+  if (is_inverse_ && std::holds_alternative<DisplacementField>(transform)) {
+    invert_field(transform, points, notes);
+  } else {
+    points = transformed(transform, std::move(points));
+  }
+}
+
+}  // namespace tetwarp::cli

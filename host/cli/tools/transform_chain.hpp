@@ -1,0 +1,46 @@
+/// @file transform_chain.hpp
+/// Meshes, displacement fields and affine transforms one after the other.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <tetwarp/io.hpp>
+#include <tetwarp/resample.hpp>
+#include <tetwarp/transform_file.hpp>
+
+namespace tetwarp::cli {
+
+/// What points met on their way.
+struct ChainNotes {
+  std::int64_t outside = 0;       ///< of a mesh: they kept their place there
+  std::int64_t not_inverted = 0;  ///< of a field: no position was found that it takes there
+  double largest_residual = 0;    ///< of those found [world]
+};
+
+/// One transform from positions of the output to positions in the source.
+class ChainLink {
+ public:
+  /// @param word  path of the file; with "^-1" behind it the inverse
+  ChainLink(const std::string& word, const MeshReadOptions& mesh, const std::optional<Axes>& axes);
+
+  const std::string& path() const { return path_; }
+  std::int64_t step_count() const;        ///< 1 but for meshes
+  const AffineTransform* affine() const;  ///< null: another transform
+  bool is_inverse() const { return is_inverse_; }
+
+  /// @param step  of a mesh; one with a single step takes that
+  void apply(std::int64_t step, int threads, std::vector<Point3>& points, ChainNotes& notes) const;
+
+ private:
+  std::string path_;
+  bool is_inverse_;
+  std::variant<std::monostate, MeshReader, Transform> what_;
+};
+
+/// The inverse. Throws std::invalid_argument when the matrix is singular.
+AffineTransform inverse_of(const AffineTransform& affine);
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,235 @@
+/// @file resample.cpp
+/// Checks the arguments of resample(), and runs its rows on host threads.
+#include <tetwarp/resample.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/error.hpp>
+
+#include "host/base/index_space.hpp"
+#include "host/base/parallel.hpp"
+#include "host/base/pixel_dispatch.hpp"
+#include "host/base/warp_backend.hpp"
+#include "host/exec/exec_cpu.hpp"
+#include "host/warp/cpu/row_resample_cpu.hpp"
+#include "host/warp/sources.hpp"
+#include "host/warp/transform_checks.hpp"
+#include "kernels/warp/row_resample.hpp"
+
+namespace tetwarp {
+namespace {
+/// From indices of a grid to the world.
+IndexAffine world_map(const Grid& grid) {
+  IndexAffine map;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      map.linear[row][axis] = grid.direction[3 * row + axis] * grid.spacing[axis];
+    }
+    map.offset[row] = grid.origin[row];
+  }
+  return map;
+}
+
+/// From the world to indices of a grid.
+IndexAffine index_map(const Grid& grid) {
+  const IndexFromWorld from_world = index_from_world(grid);
+  IndexAffine map;
+  for (int row = 0; row < 3; ++row) {
+    map.offset[row] = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      map.linear[row][axis] = from_world.linear[row][axis];
+      map.offset[row] -= from_world.linear[row][axis] * from_world.origin[axis];
+    }
+  }
+  return map;
+}
+
+IndexAffine affine_map(const AffineTransform& affine) {
+  IndexAffine map;
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::copy_n(affine.matrix.begin() + static_cast<std::ptrdiff_t>(3 * row), 3, map.linear[row]);
+    map.offset[row] = affine.offset[row];
+  }
+  return map;
+}
+
+/// a after b. Offsets are differences of positions that may be far from zero.
+IndexAffine composed(const IndexAffine& a, const IndexAffine& b) {
+  IndexAffine map;
+  a.map(b.offset, map.offset);
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      map.linear[row][axis] = 0;
+      for (int n = 0; n < 3; ++n) map.linear[row][axis] += a.linear[row][n] * b.linear[n][axis];
+    }
+  }
+  return map;
+}
+
+/// From output indices to those of another grid at the same place in the world; whole-voxel shifts
+/// are exact.
+IndexAffine between_grids(const Grid& other, const Grid& output) {
+  const IndexMap map = source_from_output(other, output);
+  IndexAffine affine;
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::copy_n(map.linear.begin() + static_cast<std::ptrdiff_t>(3 * row), 3, affine.linear[row]);
+    affine.offset[row] = map.offset[row];
+  }
+  return affine;
+}
+
+void check_transform(const Transform& transform) {
+  if (const auto* const affine = std::get_if<AffineTransform>(&transform)) {
+    const auto is_finite = [](double x) { return std::isfinite(x); };
+    if (!std::all_of(affine->matrix.begin(), affine->matrix.end(), is_finite) ||
+        !std::all_of(affine->offset.begin(), affine->offset.end(), is_finite)) {
+      throw std::invalid_argument("transform: a number is not finite");
+    }
+    return;
+  }
+  const auto& field = std::get<DisplacementField>(transform);
+  check_grid(field.grid, "displacement field");
+  if (static_cast<std::int64_t>(field.displacement.size()) != 3 * field.grid.voxel_count()) {
+    throw std::invalid_argument("displacement field: expected three numbers for every voxel");
+  }
+}
+
+FieldView view_of(const DisplacementField& field) {
+  FieldView view;
+  view.vectors = field.displacement.data();
+  std::copy_n(field.grid.dims.begin(), 3, view.dims);
+  return view;
+}
+
+ResampleMap make_map(const Grid& source,
+                     const Grid& output,
+                     const Transform& transform,
+                     const ResampleOptions& options) {
+  ResampleMap map{};
+  if (const auto* const affine = std::get_if<AffineTransform>(&transform)) {
+    map.to_source = composed(index_map(source), composed(affine_map(*affine), world_map(output)));
+    return map;
+  }
+  const auto& field = std::get<DisplacementField>(transform);
+  map.to_source = between_grids(source, output);
+  map.field = view_of(field);
+  map.is_field_grid = field.grid == output;
+  map.to_field = between_grids(field.grid, output);
+  map.only_in_field = options.only_in_field;
+  const IndexFromWorld from_world = index_from_world(source);
+  for (int row = 0; row < 3; ++row) std::copy_n(from_world.linear[row], 3, map.from_world[row]);
+  return map;
+}
+
+WarpPlan make_plan(std::span<const VolumeView> sources, const ResampleOptions& options) {
+  if (sources.empty()) throw std::invalid_argument("sources: no volume");
+  WarpPlan plan;
+  plan.sources.assign(sources.begin(), sources.end());
+  for (const VolumeView& source : sources) {
+    check_grid(source.grid, "source");
+    if (source.grid != sources.front().grid) {
+      throw std::invalid_argument("sources: volumes on different grids; resample them one by one");
+    }
+    if (source.components < 1 || source.components > 9) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, expected 1 to 9");
+    }
+    if (source.data == nullptr) throw std::invalid_argument("source: no samples");
+    if (source.memory != Memory::host) throw std::invalid_argument("source: not in host memory");
+  }
+  plan.options.filter = options.filter;
+  plan.options.overshoot = options.overshoot;
+  check_transforms(plan.sources, plan.options);
+  const Grid& grid = sources.front().grid;
+  plan.source_region = {{0, 0, 0}, grid.dims};
+  plan.output_grid = options.output_grid.value_or(grid);
+  check_grid(plan.output_grid, "output grid");
+  return plan;
+}
+}  // namespace
+
+std::vector<Point3> transformed(const Transform& transform, std::vector<Point3> points) {
+  check_transform(transform);
+  if (const auto* const affine = std::get_if<AffineTransform>(&transform)) {
+    const IndexAffine map = affine_map(*affine);
+    for (Point3& point : points) {
+      const Point3 x = point;
+      map.map(x.data(), point.data());
+    }
+    return points;
+  }
+  const auto& field = std::get<DisplacementField>(transform);
+  const FieldView view = view_of(field);
+  const IndexFromWorld from_world = index_from_world(field.grid);
+  for (Point3& point : points) {
+    double index[3], vector[3];
+    for (int row = 0; row < 3; ++row) {
+      index[row] = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        index[row] += from_world.linear[row][axis] *
+                      (point[static_cast<std::size_t>(axis)] - from_world.origin[axis]);
+      }
+    }
+    view.sample(index, vector);
+    for (std::size_t axis = 0; axis < 3; ++axis) point[axis] += vector[axis];
+  }
+  return points;
+}
+
+void resample(std::span<const VolumeView> sources,
+              const Transform& transform,
+              const ResampleOptions& options,
+              std::span<void* const> outputs,
+              const Progress& progress) {
+  check_transform(transform);
+  const WarpPlan plan = make_plan(sources, options);
+  if (outputs.size() != sources.size() ||
+      std::find(outputs.begin(), outputs.end(), nullptr) != outputs.end()) {
+    throw std::invalid_argument("outputs: expected one array per source");
+  }
+  const int threads = thread_count(options.threads);
+  CpuExec exec(threads, StageClocks::off);
+  WarpSources<CpuExec> data(exec, plan);
+  const Grid& output = plan.output_grid;
+  const ResampleMap map = make_map(sources.front().grid, output, transform, options);
+  const std::int64_t lines = resample_lines(output.dims.data());
+  constexpr std::int64_t part_voxels = 1 << 22;  // between two reports of progress
+  const std::int64_t part =
+      std::max<std::int64_t>(1, part_voxels / (cell_edge * cell_edge * output.dims[0]));
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    with_pixel_type(sources[s].type, [&]<class T>(T) {
+      RowResampleOp<T> op{};
+      op.job.source = data.view<T>(s);
+      op.job.filter = options.filter;
+      op.job.background = rounded_to<T>(options.background);
+      op.job.volume = static_cast<T*>(outputs[s]);
+      op.map = map;
+      std::copy_n(output.dims.begin(), 3, op.dims);
+      for (std::int64_t begin = 0; begin < lines; begin += part) {
+        const double done = static_cast<double>(begin) / static_cast<double>(lines);
+        const auto share = static_cast<double>(sources.size());
+        if (progress && !progress((static_cast<double>(s) + done) / share)) throw Cancelled();
+        const std::int64_t count = std::min(part, lines - begin);
+        const std::int64_t tasks = std::min<std::int64_t>(count, 4 * threads);
+        parallel_tasks(threads, tasks, [&](std::int64_t task) {
+          resample_lines(sources[s].type, &op, begin + count * task / tasks,
+                         begin + count * (task + 1) / tasks);
+        });
+      }
+    });
+  }
+  if (progress && !progress(1)) throw Cancelled();
+}
+
+Volume resample(const Volume& source, const Transform& transform, const ResampleOptions& options) {
+  const VolumeView view(source);
+  Volume result = make_volume(options.output_grid.value_or(source.grid), source.type,
+                              source.components, source.name);
+  void* const data = result.data.data();
+  resample(std::span(&view, 1), transform, options, std::span(&data, 1));
+  return result;
+}
+
+}  // namespace tetwarp

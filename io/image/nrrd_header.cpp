@@ -1,0 +1,329 @@
+/// @file nrrd_header.cpp
+/// Fields of NRRD headers; https://teem.sourceforge.net/nrrd/format.html
+#include "io/image/nrrd_header.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <tetwarp/error.hpp>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp {
+namespace {
+struct TypeName {
+  const char* name;
+  PixelType type;
+};
+constexpr TypeName type_names[] = {{"uint8", PixelType::uint8},
+                                   {"uchar", PixelType::uint8},
+                                   {"unsigned char", PixelType::uint8},
+                                   {"uint8_t", PixelType::uint8},
+                                   {"int8", PixelType::int8},
+                                   {"signed char", PixelType::int8},
+                                   {"int8_t", PixelType::int8},
+                                   {"uint16", PixelType::uint16},
+                                   {"ushort", PixelType::uint16},
+                                   {"unsigned short", PixelType::uint16},
+                                   {"unsigned short int", PixelType::uint16},
+                                   {"uint16_t", PixelType::uint16},
+                                   {"int16", PixelType::int16},
+                                   {"short", PixelType::int16},
+                                   {"short int", PixelType::int16},
+                                   {"signed short", PixelType::int16},
+                                   {"int16_t", PixelType::int16},
+                                   {"uint32", PixelType::uint32},
+                                   {"uint", PixelType::uint32},
+                                   {"unsigned int", PixelType::uint32},
+                                   {"uint32_t", PixelType::uint32},
+                                   {"int32", PixelType::int32},
+                                   {"int", PixelType::int32},
+                                   {"signed int", PixelType::int32},
+                                   {"int32_t", PixelType::int32},
+                                   {"uint64", PixelType::uint64},
+                                   {"unsigned long long", PixelType::uint64},
+                                   {"uint64_t", PixelType::uint64},
+                                   {"int64", PixelType::int64},
+                                   {"long long", PixelType::int64},
+                                   {"int64_t", PixelType::int64},
+                                   {"float", PixelType::float32},
+                                   {"double", PixelType::float64}};
+
+/// The axes of a space, and which of them point against RAS.
+struct Space {
+  const char* name;
+  const char* short_name;
+  std::array<bool, 3> is_negated;
+};
+constexpr Space spaces[] = {{"right-anterior-superior", "RAS", {false, false, false}},
+                            {"left-anterior-superior", "LAS", {true, false, false}},
+                            {"left-posterior-superior", "LPS", {true, true, false}}};
+
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+}
+
+std::vector<std::string> words_in(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+class NrrdReader {
+ public:
+  explicit NrrdReader(const std::string& path) : path_(path) {
+    read_fields();
+    const auto size_words = words_in(required("sizes"));
+    for (const std::string& word : size_words) sizes_.push_back(whole(word, "sizes"));
+    read_layout();
+    read_axes();
+    read_data();
+    for (const auto& [name, value] : fields_) header_.left_out.push_back(name);
+  }
+
+  const ImageHeader& header() const { return header_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& field, const std::string& problem) const {
+    throw IoError(path_, field, problem);
+  }
+
+  void read_fields() {
+    std::ifstream file(path_, std::ios::binary);
+    std::string line;
+    std::getline(file, line);
+    std::int64_t offset = std::ssize(line) + 1;
+    while (std::getline(file, line)) {
+      offset += std::ssize(line) + 1;
+      if (line.size() > 1 << 20) fail("", "is damaged: a line of its header has no end");
+      if (trimmed(line).empty()) {
+        has_blank_ = true;
+        break;
+      }
+      if (line[0] == '#') continue;
+      const std::size_t pair = line.find(":="), colon = line.find(": ");
+      if (pair != std::string::npos && (colon == std::string::npos || pair < colon)) {
+        header_.left_out.push_back(line.substr(0, pair));
+      } else if (colon != std::string::npos) {
+        fields_[line.substr(0, colon)] = trimmed(line.substr(colon + 2));
+      } else {
+        fail("", "is damaged: '" + line.substr(0, 40) + "' is no line of a header");
+      }
+    }
+    header_end_ = offset;
+  }
+
+  std::optional<std::string> take(const std::string& name) {
+    const auto found = fields_.find(name);
+    if (found == fields_.end()) return std::nullopt;
+    const std::string value = found->second;
+    fields_.erase(found);
+    return value;
+  }
+  std::string required(const std::string& name) {
+    const auto value = take(name);
+    if (!value) fail(name, "is missing in its header");
+    return *value;
+  }
+
+  std::int64_t whole(const std::string& word, const std::string& field) const {
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size()) {
+      fail(field, "'" + word + "' is no whole number");
+    }
+    return number;
+  }
+
+  /// "(1,0,0)" or numbers by themselves.
+  Point3 vector(std::string text, const std::string& field) const {
+    for (char& c : text) c = c == '(' || c == ')' || c == ',' ? ' ' : c;
+    const std::vector<std::string> words = words_in(text);
+    if (words.empty() || words.size() > 3) fail(field, "'" + text + "' is no vector");
+    Point3 x{0, 0, 0};
+    for (std::size_t n = 0; n < words.size(); ++n) x[n] = real(words[n], field);
+    return x;
+  }
+  double real(const std::string& word, const std::string& field) const {
+    double number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size()) {
+      fail(field, "'" + word + "' is no number");
+    }
+    return number;
+  }
+
+  /// Type, and which axes are of space: all, or all but the first.
+  void read_layout() {
+    const std::string type = required("type");
+    const auto* const known =
+        std::find_if(std::begin(type_names), std::end(type_names),
+                     [&](const TypeName& entry) { return type == entry.name; });
+    if (known == std::end(type_names)) fail("type", "'" + type + "' is not read");
+    header_.type = known->type;
+    const std::int64_t dimension = whole(required("dimension"), "dimension");
+    if (dimension != std::ssize(sizes_) || dimension < 2 || dimension > 4) {
+      fail("dimension", "expected 2 to 4 axes, each with a size");
+    }
+    const auto kinds = words_in(take("kinds").value_or(""));
+    const bool has_kinds = kinds.size() == sizes_.size();
+    const auto is_space = [&](std::size_t axis) {
+      return has_kinds ? kinds[axis] == "domain" || kinds[axis] == "space" : true;
+    };
+    const std::string directions =
+        fields_.contains("space directions") ? fields_["space directions"] : "";
+    const bool is_first_none = directions.starts_with("none");
+    first_ = dimension == 4 || is_first_none || (has_kinds && !is_space(0)) ? 1 : 0;
+    if (has_kinds && first_ == 1 && is_space(0)) {
+      fail("kinds",
+           "its first axis is one of space, and so are three others; 4D images are not "
+           "read, convert it to NIfTI");
+    }
+    for (std::size_t axis = first_; has_kinds && axis < sizes_.size(); ++axis) {
+      if (!is_space(axis)) fail("kinds", "components that are not the first axis are not read");
+    }
+    const std::size_t of_space = sizes_.size() - first_;
+    if (of_space < 2 || of_space > 3) fail("dimension", "expected two or three axes of space");
+    if (first_ == 1) {
+      if (sizes_[0] < 1 || sizes_[0] > 9) {
+        fail("sizes", "has " + std::to_string(sizes_[0]) +
+                          " components, expected 1 to 9; convert series to NIfTI");
+      }
+      header_.components = static_cast<int>(sizes_[0]);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      header_.grid.dims[axis] = axis < of_space ? sizes_[first_ + axis] : 1;
+    }
+  }
+
+  void read_axes() {
+    std::array<bool, 3> is_negated{false, false, false};
+    if (const auto space = take("space")) {
+      const auto* const known = std::find_if(
+          std::begin(spaces), std::end(spaces),
+          [&](const Space& entry) { return *space == entry.name || *space == entry.short_name; });
+      if (known == std::end(spaces)) {
+        fail("space", "'" + *space + "' is not read, expected one of RAS, LAS and LPS");
+      }
+      is_negated = known->is_negated;
+    }
+    take("space dimension");
+    std::array<Point3, 3> steps{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const std::size_t of_space = sizes_.size() - first_;
+    if (const auto directions = take("space directions")) {
+      std::vector<std::string> parts;
+      std::string joined;  // "(1, 0, 0)" may have blanks
+      for (const std::string& word : words_in(*directions)) {
+        joined += word;
+        if (joined != "none" && joined.back() != ')') continue;
+        parts.push_back(joined);
+        joined.clear();
+      }
+      if (parts.size() != sizes_.size()) fail("space directions", "expected one for every axis");
+      for (std::size_t axis = 0; axis < of_space; ++axis) {
+        steps[axis] = vector(parts[first_ + axis], "space directions");
+      }
+      take("spacings");
+    } else if (const auto spacings = take("spacings")) {
+      const auto words = words_in(*spacings);
+      if (words.size() != sizes_.size()) fail("spacings", "expected one for every axis");
+      for (std::size_t axis = 0; axis < of_space; ++axis) {
+        steps[axis][axis] = real(words[first_ + axis], "spacings");
+      }
+    }
+    if (of_space == 2) steps[2] = unit(cross(steps[0], steps[1]));
+    const auto origin = take("space origin");
+    try {
+      set_image_axes(steps, origin ? vector(*origin, "space origin") : Point3{0, 0, 0}, is_negated,
+                     header_.grid);
+    } catch (const std::invalid_argument& error) {
+      fail("space directions", error.what());
+    }
+  }
+
+  void read_data() {
+    const std::string encoding = required("encoding");
+    header_.is_packed = encoding == "gzip" || encoding == "gz";
+    if (!header_.is_packed && encoding != "raw") {
+      fail("encoding", "'" + encoding + "' is not read, expected raw or gzip");
+    }
+    const auto endian = take("endian");
+    if (!endian && size_of(header_.type) > 1) fail("endian", "is missing in its header");
+    header_.is_big_endian = endian == "big";
+    if (const auto skipped = take("line skip"); skipped && *skipped != "0") {
+      fail("line skip", "is not read, expected 0");
+    }
+    take("lineskip");
+    const auto skip = take("byte skip");
+    const auto file = fields_.contains("data file") ? take("data file") : take("datafile");
+    if (file && (file->starts_with("LIST") || file->find('%') != std::string::npos)) {
+      fail("data file", "samples in several files are not read");
+    }
+    if (!file && !has_blank_) fail("", "is damaged: its header has no end");
+    header_.data_file = file ? beside(path_, *file) : path_;
+    header_.data_offset = file ? 0 : header_end_;
+    if (skip) {
+      const std::int64_t bytes = whole(*skip, "byte skip");
+      header_.data_offset = bytes < 0 ? -1 : header_.data_offset + bytes;
+    }
+  }
+
+  std::string path_;
+  std::map<std::string, std::string> fields_;
+  std::vector<std::int64_t> sizes_;
+  std::size_t first_ = 0;  // axis of space
+  std::int64_t header_end_ = 0;
+  bool has_blank_ = false;
+  ImageHeader header_;
+};
+
+std::string number_text(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+}  // namespace
+
+bool is_nrrd(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char magic[7] = {};
+  return file.read(magic, sizeof magic) && std::string(magic, 7) == "NRRD000";
+}
+
+ImageHeader read_nrrd_header(const std::string& path) {
+  return NrrdReader(path).header();
+}
+
+std::string nrrd_header_text(const Grid& grid, PixelType type, int components, bool is_packed) {
+  const auto* const known = std::find_if(std::begin(type_names), std::end(type_names),
+                                         [&](const TypeName& entry) { return type == entry.type; });
+  const bool has_components = components > 1;
+  std::string text = "NRRD0004\n# written by tetwarp\ntype: " + std::string(known->name) +
+                     "\ndimension: " + (has_components ? "4" : "3") +
+                     "\nspace: left-posterior-superior\nsizes:";
+  if (has_components) text += " " + std::to_string(components);
+  for (const std::int64_t size : grid.dims) text += " " + std::to_string(size);
+  text += "\nspace directions:";
+  if (has_components) text += " none";
+  const auto lps = [](std::size_t row, double x) { return number_text(row < 2 ? 0 - x : x); };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      text +=
+          (row == 0 ? " (" : ",") + lps(row, grid.direction[3 * row + axis] * grid.spacing[axis]);
+    }
+    text += ")";
+  }
+  text += std::string("\nkinds: ") + (has_components ? components == 3 ? "vector " : "list " : "") +
+          "domain domain domain\nendian: little\nencoding: " + (is_packed ? "gzip" : "raw") +
+          "\nspace origin: (" + lps(0, grid.origin[0]) + "," + lps(1, grid.origin[1]) + "," +
+          lps(2, grid.origin[2]) + ")\n\n";
+  return text;
+}
+
+}  // namespace tetwarp

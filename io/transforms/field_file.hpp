@@ -1,0 +1,16 @@
+/// @file field_file.hpp
+/// Displacement fields in NIfTI images, NRRD files, MetaImages and VTKHDF volumes.
+#pragma once
+#include <optional>
+#include <string>
+
+#include <tetwarp/transform_file.hpp>
+
+namespace tetwarp {
+
+/// @throws IoError  as read_transform()
+TransformFile read_nifti_field(const std::string& path, const std::optional<Axes>& axes);
+TransformFile read_image_field(const std::string& path, const std::optional<Axes>& axes);
+TransformFile read_volume_field(const std::string& path);
+
+}  // namespace tetwarp

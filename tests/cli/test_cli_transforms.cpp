@@ -1,0 +1,120 @@
+/// @file test_cli_transforms.cpp
+/// `tetwarp warp` by fields, `compose` and `invert`: each agrees with the warp by the mesh. Formats
+/// and conventions: tests/io/check_transforms.py.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <vector>
+
+#include "tests/support/cli_scene.hpp"
+
+namespace tetwarp::test {
+namespace {
+using Names = std::vector<std::string>;
+
+class CliTransforms : public ::testing::Test {
+ protected:
+  CommandResult run(const Names& words, int exit_code = 0) const {
+    CommandResult result = run_command(scene, words);
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_TRUE(exit_code == 0 || result.has_one_line_error()) << result.err;
+    return result;
+  }
+  double difference(const std::string& a, const std::string& b) const {
+    const Volume first = read_volume(scene / a), second = read_volume(scene / b);
+    EXPECT_EQ(first.data.size(), second.data.size());
+    const auto x = first.samples<float>(), y = second.samples<float>();
+    double largest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      largest = std::max(largest, static_cast<double>(std::abs(x[i] - y[i])));
+    }
+    return largest;
+  }
+
+  const Scene scene;
+};
+
+/// The ramp has 960 as its largest sample; the mesh covers every voxel center.
+TEST_F(CliTransforms, AFieldOfTheWarpWarpsAsTheMesh) {
+  run({"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "mesh.nii.gz", "--steps", "3", "--outputs",
+       "displacement"});
+  run({"warp", "volume.vtkhdf", "mesh_displacement.nii.gz", "-o", "field.nii.gz", "--outside",
+       "background"});
+  EXPECT_LT(difference("field.nii.gz", "mesh.nii.gz"), 960.0);
+  run({"compose", "mesh.vtkhdf", "-o", "composed.vtkhdf", "--like", "volume.vtkhdf", "--steps",
+       "3"});
+  run({"warp", "volume.vtkhdf", "composed.vtkhdf", "-o", "by_field.vtkhdf"});
+  run({"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "by_mesh.vtkhdf", "--steps", "3", "--outside",
+       "identity"});
+  EXPECT_LT(difference("by_field.vtkhdf", "by_mesh.vtkhdf"), 1e-3);
+}
+
+TEST_F(CliTransforms, ComposedOfAMeshAndItsInverseIsTheIdentity) {
+  run({"deform", "mesh.vtkhdf", "-o", "bent.vtkhdf", "--kind", "bend", "--amount", "0.2", "--steps",
+       "1"});
+  const CommandResult inverse = run({"invert", "bent.vtkhdf", "-o", "back.vtkhdf"});
+  EXPECT_NE(inverse.out.find("round trip of 13 points within"), std::string::npos) << inverse.out;
+  EXPECT_EQ(inverse.err, "");
+  // Where the bent mesh is; elsewhere it moves nothing, and its inverse does.
+  run({"warp", "volume.vtkhdf", "bent.vtkhdf", "-o", "bent_volume.vtkhdf", "--outputs", "mask"});
+  const Volume mask = read_volume(scene / "bent_volume.vtkhdf", "tetwarp_mask");
+  const auto covered = mask.samples<std::uint8_t>();
+  EXPECT_GT(std::count(covered.begin(), covered.end(), 1), 600);
+  for (const std::string& inverse : Names{"bent.vtkhdf^-1", "back.vtkhdf"}) {
+    run({"compose", inverse, "bent.vtkhdf", "-o", "none.vtkhdf", "--like", "volume.vtkhdf"});
+    const Volume field = read_volume(scene / "none.vtkhdf", "tetwarp_displacement");
+    const auto u = field.samples<float>();
+    for (std::size_t n = 0; n < u.size(); ++n) {
+      if (covered[n / 3] == 0) continue;
+      EXPECT_LT(std::abs(u[n]), 1e-5) << inverse << n;
+    }
+  }
+}
+
+TEST_F(CliTransforms, InvertTellsFoldsAndRefusesSeveralSteps) {
+  Mesh mesh = box_mesh();
+  std::vector<Point3> moved(mesh.rest_positions.size(), Point3{0, 0, 0});
+  moved[0] = {60, 40, 40};  // through the opposite face
+  write_mesh(scene / "folded.vtkhdf", mesh, {moved}, {0});
+
+  const CommandResult folded = run({"invert", "folded.vtkhdf", "-o", "back.vtkhdf"});
+
+  EXPECT_NE(folded.err.find("folds: "), std::string::npos) << folded.err;
+  EXPECT_EQ(std::count(folded.err.begin(), folded.err.end(), '\n'), 1);
+  EXPECT_NE(
+      run({"invert", "mesh.vtkhdf", "-o", "back.vtkhdf"}, 1).err.find("choose one with --step"),
+      std::string::npos);
+}
+
+TEST_F(CliTransforms, OptionsOfMeshesAndBadFilesAreRefused) {
+  run({"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "w.nii.gz", "--steps", "3", "--outputs",
+       "displacement"});
+  const std::string field = "w_displacement.nii.gz";
+  EXPECT_NE(run({"warp", "volume.vtkhdf", field, "-o", "o.vtkhdf", "--count-folded"}, 1)
+                .err.find("--count-folded is for warps by a mesh"),
+            std::string::npos);
+  EXPECT_NE(run({"warp", "volume.vtkhdf", "volume.vtkhdf", field, "-o", "o"}, 1)
+                .err.find("one image at a time"),
+            std::string::npos);
+  EXPECT_NE(run({"warp", "volume.vtkhdf", field, "-o", "o.vtkhdf", "--grid", "bounds"}, 1)
+                .err.find("--grid bounds is for warps by a mesh"),
+            std::string::npos);
+  EXPECT_NE(run({"compose", "volume.vtkhdf", "-o", "o.vtkhdf", "--like", "volume.vtkhdf"}, 1)
+                .err.find("expected a mesh"),
+            std::string::npos);
+  write_text(
+      scene / "flat.tfm",
+      "#Insight Transform File V1.0\nTransform: ScaleTransform_double_3_3\nParameters: 1 0 1\n"
+      "FixedParameters: 0 0 0\n");
+  EXPECT_NE(run({"compose", "flat.tfm^-1", "-o", "o.vtkhdf", "--like", "volume.vtkhdf"}, 1)
+                .err.find("has no inverse"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(scene / "o.vtkhdf"));
+}
+
+}  // namespace
+}  // namespace tetwarp::test

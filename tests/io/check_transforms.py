@@ -1,0 +1,365 @@
+"""Compares warps by displacement fields and affine transforms with NumPy, and with SimpleITK.
+
+Usage: check_transforms.py COMMAND
+
+Images and fields of all 48 orientations are written here byte by byte, one physical displacement in
+each convention that fields have, and the warped image is computed from the definition. Affine
+transforms are written as ITK's text and MATLAB files; their matrices are computed here. Where
+SimpleITK is installed, its results are compared, too. Exits 77 when NumPy is missing, 1 when a value
+differs.
+"""
+import itertools
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+
+try:
+    import numpy as np
+except ImportError as error:
+    print(f"skipped: {error}; install NumPy")
+    sys.exit(77)
+try:
+    import SimpleITK as sitk
+except ImportError:
+    sitk = None
+    print("SimpleITK is not installed: its results are not compared")
+
+LPS = np.diag([-1.0, -1.0, 1.0])  # from RAS to LPS and back
+DIMS = (9, 8, 7)
+DISPVECT, VECTOR = 1006, 1007
+
+
+def write_nifti(path, samples, affine, intent=0, name="", parameter=0.0, unit=2, form=1):
+    """A file of float32 [i][j][k] or [i][j][k][c]; affine from voxel to RAS."""
+    samples = np.asarray(samples, np.float32)
+    dims = samples.shape[:3]
+    components = samples.shape[3] if samples.ndim == 4 else 0
+    header = bytearray(352)
+    dim = [5, *dims, 1, components, 1, 1] if components else [3, *dims, 1, 1, 1, 1]
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, *dim)
+    struct.pack_into("<3f", header, 56, parameter, 0, 0)
+    struct.pack_into("<hhh", header, 68, intent, 16, 32)
+    spacing = np.linalg.norm(affine[:3, :3], axis=0)
+    struct.pack_into("<8f", header, 76, 1, *spacing, 1, 1, 1, 1)
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<B", header, 123, unit)
+    struct.pack_into("<hh", header, 252, 0, form)
+    struct.pack_into("<12f", header, 280, *affine[:3].ravel())
+    struct.pack_into("<16s", header, 328, name.encode())
+    struct.pack_into("<4s", header, 344, b"n+1\0")
+    with open(path, "wb") as file:
+        file.write(header)
+        file.write(samples.tobytes(order="F"))
+
+
+def read_nifti(path):
+    """Samples of a file of float32 that the command wrote."""
+    with open(path, "rb") as file:
+        data = file.read()
+    dim = struct.unpack_from("<8h", data, 40)
+    assert struct.unpack_from("<h", data, 70)[0] == 16, "expected float32"
+    shape = dim[1 : dim[0] + 1]
+    offset = int(struct.unpack_from("<f", data, 108)[0])
+    return np.frombuffer(data, "<f4", offset=offset).reshape(shape, order="F")
+
+
+def points_of(dims, affine):
+    index = np.stack(np.meshgrid(*[np.arange(n) for n in dims], indexing="ij"), axis=-1)
+    return index @ affine[:3, :3].T + affine[:3, 3]
+
+
+def sampled(samples, affine, points, beyond):
+    """Linear between centers, constant for the last half voxel, `beyond` farther out."""
+    index = (points - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
+    last = np.array(samples.shape[:3]) - 1
+    inside = np.all((index >= -0.5 - 1e-6) & (index <= last + 0.5 + 1e-6), axis=-1)
+    index = np.clip(index, 0, last)
+    lower = np.minimum(np.floor(index).astype(int), np.maximum(last - 1, 0))
+    fraction = index - lower
+    result = np.zeros(points.shape[:-1] + samples.shape[3:])
+    for corner in itertools.product((0, 1), repeat=3):
+        place = np.minimum(lower + corner, last)
+        weight = np.prod(np.where(corner, fraction, 1 - fraction), axis=-1)
+        values = samples[place[..., 0], place[..., 1], place[..., 2]].astype(float)
+        result += values * weight.reshape(weight.shape + (1,) * (samples.ndim - 3))
+    inside = inside.reshape(inside.shape + (1,) * (samples.ndim - 3))
+    return np.where(inside, result, beyond)
+
+
+def orientations():
+    """From voxel to RAS: every order of the axes and every sign."""
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1, -1), repeat=3):
+            affine = np.eye(4)
+            for axis in range(3):
+                affine[:3, axis] = 0
+                affine[order[axis], axis] = signs[axis] * (1.5, 2.0, 2.5)[axis]
+            affine[:3, 3] = (12, -34, 56)
+            yield affine
+
+
+def displacement(points):
+    """Along RAS."""
+    x, y, z = np.moveaxis(points - (12, -34, 56), -1, 0)
+    return np.stack([1.03 + np.sin(y / 5), 0.8 * np.cos(z / 4 + x / 9), 1.2 * np.sin(x / 6)], axis=-1)
+
+
+class Command:
+    def __init__(self, command, folder):
+        self.command, self.folder = os.path.abspath(command), folder
+
+    def __call__(self, *words):
+        result = subprocess.run([self.command, *words], cwd=self.folder, capture_output=True,
+                                text=True, check=False)
+        if result.returncode != 0:
+            sys.exit(f"tetwarp {' '.join(words)}: {result.stderr}")
+        return result.stdout
+
+    def refused(self, *words):
+        result = subprocess.run([self.command, *words], cwd=self.folder, capture_output=True,
+                                text=True, check=False)
+        if result.returncode == 0 or result.stderr.count("\n") != 1:
+            sys.exit(f"tetwarp {' '.join(words)}: expected one line, got {result.stderr!r}")
+        return result.stderr
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+
+worst_of = {}
+
+
+def expect(what, found, expected, tolerance):
+    if np.shape(found) != np.shape(expected):
+        sys.exit(f"{what}: shape {np.shape(found)}, expected {np.shape(expected)}")
+    worst = float(np.max(np.abs(np.asarray(found, float) - expected)))
+    worst_of[what] = max(worst_of.get(what, 0), worst)
+    if not worst <= tolerance:
+        sys.exit(f"{what}: differs by {worst}, expected at most {tolerance}")
+
+
+def check_orientation(run, image, affine, coarse):
+    """One displacement in every convention, on the image's grid and on a coarser one."""
+    write_nifti(run.path("image.nii"), image, affine)
+    for name, grid, dims in ("same", affine, DIMS), ("coarse", coarse, (6, 5, 5)):
+        points = points_of(dims, grid)
+        vectors = displacement(points).astype(np.float32)
+        kinds = {
+            "VECTOR": (vectors @ LPS, dict(intent=VECTOR)),
+            "DISPVECT": (vectors, dict(intent=DISPVECT)),
+            "NREG_TRANS displacement": (vectors, dict(intent=VECTOR, name="NREG_TRANS",
+                                                      parameter=1)),
+            "NREG_TRANS positions": (vectors + points, dict(intent=VECTOR, name="NREG_TRANS")),
+        }
+        x = points_of(DIMS, affine)
+        field = vectors if name == "same" else sampled(vectors, grid, x, 0)
+        expected = sampled(image, affine, x + field, -1)
+        for kind, (numbers, words) in kinds.items():
+            write_nifti(run.path("field.nii"), numbers, grid, **words)
+            run("warp", "image.nii", "field.nii", "-o", "out.nii", "--background", "-1")
+            expect(f"{kind}, {name} grid", read_nifti(run.path("out.nii")), expected, 2e-4)
+        if sitk:
+            write_nifti(run.path("field.nii"), vectors @ LPS, grid, intent=VECTOR)
+            run("warp", "image.nii", "field.nii", "-o", "out.nii", "--background", "-1")
+            source = sitk.ReadImage(run.path("image.nii"), sitk.sitkFloat64)
+            by_itk = sitk.Resample(source, sitk.DisplacementFieldTransform(
+                sitk.ReadImage(run.path("field.nii"), sitk.sitkVectorFloat64)),
+                sitk.sitkLinear, -1.0)
+            expect(f"SimpleITK, {name} grid", read_nifti(run.path("out.nii")),
+                   np.swapaxes(sitk.GetArrayFromImage(by_itk), 0, 2), 2e-4)
+
+
+def check_units(run, image, affine):
+    """Displacements of intent VECTOR are in mm whatever the unit of the header."""
+    vectors = displacement(points_of(DIMS, affine)).astype(np.float32)
+    expected = sampled(image, affine, points_of(DIMS, affine) + vectors, 0)
+    for unit, millimeters in (1, 1000), (3, 0.001):
+        scaled = affine.copy()
+        scaled[:3] /= millimeters
+        write_nifti(run.path("image.nii"), image, scaled, unit=unit)
+        write_nifti(run.path("field.nii"), vectors @ LPS, scaled, intent=VECTOR, unit=unit)
+        run("warp", "image.nii", "field.nii", "-o", "out.nii")
+        expect(f"unit {unit}", read_nifti(run.path("out.nii")), expected, 1e-3)
+
+
+def rotation(axis, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.eye(3)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
+    return turn
+
+
+def versor(axis, angle):
+    return np.sin(angle / 2) * np.asarray(axis) / np.linalg.norm(axis)
+
+
+def about(axis, angle):
+    """Rodrigues' formula."""
+    x, y, z = np.asarray(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+CENTER = np.array([-10.37, 30.11, 60.73])  # no position falls on the rim of a source
+MOVE = np.array([1.513, -2.027, 0.711])
+TURN = np.array([1.0, 2.0, -0.5])
+
+
+def transforms():
+    """Type, parameters, fixed parameters, matrix and translation about the center, in LPS."""
+    matrix = np.array([[1.1, 0.1, -0.2], [0.05, 0.9, 0.1], [0.1, -0.1, 1.05]])
+    x, y, z = rotation(0, 0.2), rotation(1, -0.3), rotation(2, 0.4)
+    yield "AffineTransform", [*matrix.ravel(), *MOVE], CENTER, matrix, MOVE
+    yield "MatrixOffsetTransformBase", [*matrix.ravel(), *MOVE], CENTER, matrix, MOVE
+    yield "TranslationTransform", MOVE, [], np.eye(3), MOVE
+    yield "Euler3DTransform", [0.2, -0.3, 0.4, *MOVE], [*CENTER, 0], z @ x @ y, MOVE
+    yield "Euler3DTransform", [0.2, -0.3, 0.4, *MOVE], [*CENTER, 1], z @ y @ x, MOVE
+    yield "VersorRigid3DTransform", [*versor(TURN, 0.5), *MOVE], CENTER, about(TURN, 0.5), MOVE
+    yield ("Similarity3DTransform", [*versor(TURN, 0.5), *MOVE, 1.2], CENTER,
+           1.2 * about(TURN, 0.5), MOVE)
+    yield "ScaleTransform", [1.1, 0.9, 1.2], CENTER, np.diag([1.1, 0.9, 1.2]), np.zeros(3)
+
+
+def text_of(kinds):
+    lines = ["#Insight Transform File V1.0"]
+    for n, (kind, parameters, fixed) in enumerate(kinds):
+        lines += [f"#Transform {n}", f"Transform: {kind}_double_3_3"]
+        if not kind.startswith("Composite"):
+            lines += ["Parameters: " + " ".join(repr(float(p)) for p in parameters),
+                      "FixedParameters: " + " ".join(repr(float(f)) for f in fixed)]
+    return "\n".join(lines) + "\n"
+
+
+def matlab_of(kind, parameters, fixed):
+    data = b""
+    for name, numbers in (f"{kind}_double_3_3", parameters), ("fixed", fixed):
+        data += struct.pack("<5i", 0, len(numbers), 1, 0, len(name) + 1) + name.encode() + b"\0"
+        data += np.asarray(numbers, "<f8").tobytes()
+    return data
+
+
+def check_affine(run, image, affine):
+    write_nifti(run.path("image.nii"), image, affine)
+    x = points_of(DIMS, affine) @ LPS
+    moved = {}
+    for kind, parameters, fixed, matrix, move in transforms():
+        center = np.zeros(3) if len(fixed) == 0 else np.asarray(fixed[:3])
+        there = (x - center) @ matrix.T + center + move
+        expected = sampled(image, affine, there @ LPS, 0)
+        moved[kind] = (parameters, fixed, matrix, center, move)
+        with open(run.path("a.tfm"), "w", encoding="ascii") as file:
+            file.write(text_of([(kind, parameters, fixed)]))
+        with open(run.path("a.mat"), "wb") as file:
+            file.write(matlab_of(kind, parameters, fixed))
+        for name in ("a.tfm", "a.mat"):
+            run("warp", "image.nii", name, "-o", "out.nii")
+            expect(f"{kind} in {name}", read_nifti(run.path("out.nii")), expected, 2e-4)
+        if sitk and not kind.startswith("Matrix"):
+            by_itk = sitk.Resample(sitk.ReadImage(run.path("image.nii"), sitk.sitkFloat64),
+                                   sitk.ReadTransform(run.path("a.tfm")), sitk.sitkLinear, 0.0)
+            expect(f"{kind} by SimpleITK", read_nifti(run.path("out.nii")),
+                   np.swapaxes(sitk.GetArrayFromImage(by_itk), 0, 2), 2e-4)
+    # A composite applies its last transform first.
+    chain = ["ScaleTransform", "AffineTransform"]
+    there = x
+    for kind in reversed(chain):
+        _, _, matrix, center, move = moved[kind]
+        there = (there - center) @ matrix.T + center + move
+    with open(run.path("c.tfm"), "w", encoding="ascii") as file:
+        file.write(text_of([("CompositeTransform", [], []),
+                            *[(kind, *moved[kind][:2]) for kind in chain]]))
+    run("warp", "image.nii", "c.tfm", "-o", "out.nii")
+    expect("composite", read_nifti(run.path("out.nii")), sampled(image, affine, there @ LPS, 0), 2e-4)
+
+
+def check_compose(run, image, affine):
+    """An image warped by A, then by B: sampled at A(B(x))."""
+    write_nifti(run.path("image.nii"), image, affine)
+    kind, parameters, fixed, matrix, move = next(transforms())
+    with open(run.path("a.tfm"), "w", encoding="ascii") as file:
+        file.write(text_of([(kind, parameters, fixed)]))
+    x = points_of(DIMS, affine)
+    vectors = displacement(x).astype(np.float32)
+    write_nifti(run.path("field.nii"), vectors, affine, intent=DISPVECT)
+
+    def by_affine(points):
+        return ((points @ LPS - CENTER) @ matrix.T + CENTER + move) @ LPS
+
+    def by_inverse(points):
+        return ((points @ LPS - CENTER - move) @ np.linalg.inv(matrix).T + CENTER) @ LPS
+
+    def by_field(points):
+        return points + sampled(vectors, affine, points, 0)
+
+    for words, expected in {
+        ("field.nii", "a.tfm"): by_field(by_affine(x)),
+        ("a.tfm", "field.nii"): by_affine(by_field(x)),
+        ("a.tfm^-1", "field.nii"): by_inverse(by_field(x)),
+    }.items():
+        run("compose", *words, "-o", "joined.nii", "--like", "image.nii")
+        field = read_nifti(run.path("joined.nii"))[:, :, :, 0] @ LPS
+        expect(f"compose {' '.join(words)}", field, expected - x, 2e-5)
+    run("compose", "field.nii^-1", "field.nii", "-o", "joined.nii", "--like", "image.nii")
+    field = read_nifti(run.path("joined.nii"))[:, :, :, 0]
+    inner = by_field(x)
+    index = (inner - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
+    near = np.all((index > 1) & (index < np.array(DIMS) - 2), axis=-1)
+    expect("inverse of a field", field[near], np.zeros_like(field[near]), 1e-4)
+
+
+def check_refusals(run, image, affine):
+    write_nifti(run.path("image.nii"), image, affine)
+    vectors = displacement(points_of(DIMS, affine))
+    write_nifti(run.path("field.nii"), vectors, affine)
+    line = run.refused("warp", "image.nii", "field.nii", "-o", "out.nii")
+    assert "state --axes lps" in line, line
+    run("warp", "image.nii", "field.nii", "-o", "out.nii", "--axes", "ras")
+    expected = sampled(image, affine, points_of(DIMS, affine) + vectors, 0)
+    expect("--axes ras", read_nifti(run.path("out.nii")), expected, 2e-4)
+    for text, word in {
+        "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n": "does not tell its axes",
+        text_of([("BSplineTransform", [0], [0])]): "is no affine transform",
+        text_of([("AffineTransform", [1, 2], [])]): "expected 12 finite parameters",
+        text_of([("ScaleTransform", [1, 1, 1], [])] * 2): "write a composite",
+        "#Insight Transform File V1.0\nTransform: AffineTransform_double_3_3\nParameters: 1 x\n":
+            "'x' is no number",
+        "#Insight Transform File V1.0\n": "holds no transform",
+    }.items():
+        with open(run.path("bad.tfm"), "w", encoding="ascii") as file:
+            file.write(text)
+        line = run.refused("warp", "image.nii", "bad.tfm", "-o", "out.nii")
+        assert word in line, line
+    for data in b"", b"\0" * 7, struct.pack("<5i", 0, 999, 999, 0, 4) + b"abc\0":
+        with open(run.path("bad.mat"), "wb") as file:
+            file.write(data)
+        run.refused("warp", "image.nii", "bad.mat", "-o", "out.nii")
+    line = run.refused("warp", "image.nii", "field.nii", "-o", "out.nii", "--axes", "ras",
+                       "--temporal")
+    assert "--temporal is for warps by a mesh" in line, line
+
+
+def main():
+    random = np.random.default_rng(7)
+    image = random.uniform(0, 100, DIMS).astype(np.float32)
+    with tempfile.TemporaryDirectory() as folder:
+        run = Command(sys.argv[1], folder)
+        for affine in orientations():
+            coarse = affine.copy()
+            coarse[:3, :3] *= 1.3
+            coarse[:3, 3] += affine[:3, :3] @ (0.4, 0.9, -0.3)
+            check_orientation(run, image, affine, coarse)
+        for affine in itertools.islice(orientations(), 0, None, 7):
+            check_affine(run, image, affine)
+            check_compose(run, image, affine)
+        check_units(run, image, next(orientations()))
+        check_refusals(run, image, next(orientations()))
+    for what, worst in worst_of.items():
+        print(f"{what}: {worst:.1e}")
+
+
+if __name__ == "__main__":
+    main()

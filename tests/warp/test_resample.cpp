@@ -1,0 +1,208 @@
+/// @file test_resample.cpp
+/// Resampling by affine transforms and displacement fields: laws, the warp by a mesh of the same
+/// map, borders.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <tetwarp/resample.hpp>
+
+#include "host/base/point3.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/warp_run.hpp"
+
+namespace tetwarp::test {
+namespace {
+AffineTransform turned() {
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  return {{c, -s, 0.1, s, c, 0, 0, 0.05, 1.1}, {3.2, -1.7, 0.6}};
+}
+
+Point3 at(const AffineTransform& affine, const Point3& x) {
+  return transformed(affine, {x})[0];
+}
+
+/// The displacements of an affine transform on a grid.
+DisplacementField field_of(const AffineTransform& affine, const Grid& grid) {
+  DisplacementField field{grid, {}};
+  for (std::int64_t k = 0; k < grid.dims[2]; ++k) {
+    for (std::int64_t j = 0; j < grid.dims[1]; ++j) {
+      for (std::int64_t i = 0; i < grid.dims[0]; ++i) {
+        const Point3 x =
+            grid.world_of({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+        for (const double u : minus(at(affine, x), x)) {
+          field.displacement.push_back(static_cast<float>(u));
+        }
+      }
+    }
+  }
+  return field;
+}
+
+DisplacementField shift_field(const Grid& grid, const Point3& shift) {
+  return field_of({{1, 0, 0, 0, 1, 0, 0, 0, 1}, shift}, grid);
+}
+
+/// One cell of five tetrahedra that contains the grid, moved by the inverse map.
+Volume by_mesh(const Volume& source, const AffineTransform& affine, const WarpOptions& options) {
+  Mesh mesh = scenes::lattice({1, 1, 1}, {-300, -300, -300}, {300, 300, 300});
+  const std::vector<Point3> deformed = mesh.rest_positions;
+  mesh.rest_positions = transformed(affine, deformed);
+  return warp(source, mesh, deformed, options).volume;
+}
+
+double largest_difference(const Volume& a, const Volume& b) {
+  const std::vector<double> x = numbers_of(a), y = numbers_of(b);
+  EXPECT_EQ(x.size(), y.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, std::abs(x[i] - y[i]));
+  return largest;
+}
+
+const std::array<std::array<std::int64_t, 3>, 7> sizes{
+    {{1, 1, 1}, {1, 9, 5}, {7, 3, 4}, {8, 8, 8}, {9, 17, 3}, {31, 5, 6}, {33, 10, 9}}};
+
+TEST(Resample, ByTheIdentityIsACopy) {
+  for (const auto& dims : sizes) {
+    for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::float32,
+                                 PixelType::float64, PixelType::uint32, PixelType::int64}) {
+      for (const int components : {1, 3}) {
+        Grid grid = scenes::oblique_grid(dims[0], dims[1], dims[2]);
+        const Volume source = scenes::wavy_volume(grid, type, components);
+        const ResampleOptions options{.filter = type == PixelType::int64 ? Filter::nearest
+                                                                         : Filter::linear};
+        EXPECT_EQ(resample(source, shift_field(grid, {0, 0, 0}), options).data, source.data)
+            << name_of(type) << dims[0];
+      }
+    }
+  }
+}
+
+TEST(Resample, ByWholeVoxelsMovesSamplesAndFillsWithBackground) {
+  const Grid grid = scenes::unit_grid(19, 11, 10);
+  const Volume source = scenes::wavy_volume(grid, PixelType::int16);
+  const Volume moved = resample(source, shift_field(grid, {2, -1, 3}), {.background = -7});
+  const auto from = source.samples<std::int16_t>(), to = moved.samples<std::int16_t>();
+  for (std::int64_t k = 0; k < 10; ++k) {
+    for (std::int64_t j = 0; j < 11; ++j) {
+      for (std::int64_t i = 0; i < 19; ++i) {
+        const bool inside = i + 2 < 19 && j >= 1 && k + 3 < 10;
+        const auto v = static_cast<std::size_t>((k * 11 + j) * 19 + i);
+        const auto other = static_cast<std::size_t>(((k + 3) * 11 + j - 1) * 19 + i + 2);
+        EXPECT_EQ(to[v], inside ? from[other] : -7);
+      }
+    }
+  }
+}
+
+/// Positions of the warp are those of rounded nodes, and here of float32: 1e-4 voxel together.
+TEST(Resample, EqualsTheWarpByAMeshOfTheSameMap) {
+  const Grid grid = scenes::unit_grid(37, 29, 23);
+  for (const PixelType type :
+       {PixelType::uint8, PixelType::int16, PixelType::float32, PixelType::float64}) {
+    const Volume source = scenes::wavy_volume(grid, type);
+    const std::vector<double> samples = numbers_of(source);
+    const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+    const double bound = 1e-3 * (*high - *low) + (is_integer(type) ? 1 : 0);
+    for (const Filter filter : {Filter::linear, Filter::cubic, Filter::bspline, Filter::lanczos}) {
+      const Volume truth = by_mesh(source, turned(), {.filter = filter, .background = *low});
+      const ResampleOptions options{.filter = filter, .background = *low};
+      EXPECT_LE(largest_difference(resample(source, turned(), options), truth), bound)
+          << name_of(type) << name_of(filter);
+      EXPECT_LE(largest_difference(resample(source, field_of(turned(), grid), options), truth),
+                bound)
+          << name_of(type) << name_of(filter);
+    }
+  }
+}
+
+/// A linear field is the same between the centers of any grid.
+TEST(Resample, ByAFieldOnAnotherGridInterpolatesItLinearly) {
+  const Grid grid = scenes::oblique_grid(21, 18, 15);
+  const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+  Grid coarse = grid;
+  coarse.dims = {9, 8, 7};
+  for (double& spacing : coarse.spacing) spacing *= 3;
+  coarse.origin = grid.world_of({-1, -1, -1});
+  const ResampleOptions options{.background = -50};
+
+  EXPECT_LT(largest_difference(resample(source, field_of(turned(), coarse), options),
+                               resample(source, turned(), options)),
+            0.02);
+}
+
+TEST(Resample, BeyondItsGridAFieldIsZeroOrBackground) {
+  const Grid grid = scenes::unit_grid(24, 6, 5);
+  const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+  Grid half = grid;
+  half.dims[0] = 12;  // ends at 11.5
+  const DisplacementField field = shift_field(half, {0, 1, 0});
+
+  const Volume zero = resample(source, field, {.background = -9});
+  const Volume background = resample(source, field, {.background = -9, .only_in_field = true});
+
+  const auto s = source.samples<float>(), z = zero.samples<float>(),
+             b = background.samples<float>();
+  for (std::size_t i = 0; i < 24; ++i) {
+    EXPECT_EQ(z[i], i < 12 ? s[24 + i] : s[i]) << i;
+    EXPECT_EQ(b[i], i < 12 ? s[24 + i] : -9) << i;
+  }
+  EXPECT_EQ(transformed(field, {{11.4, 2, 2}, {11.6, 2, 2}}),
+            (std::vector<Point3>{{11.4, 3, 2}, {11.6, 2, 2}}));
+}
+
+TEST(Resample, OfDisplacementsThatAreNoNumbersOrHugeIsBackground) {
+  const Grid grid = scenes::unit_grid(16, 4, 4);
+  const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+  DisplacementField field = shift_field(grid, {0, 0, 0});
+  field.displacement[3 * 5] = std::numeric_limits<float>::quiet_NaN();
+  field.displacement[3 * 6 + 1] = std::numeric_limits<float>::infinity();
+  field.displacement[3 * 7 + 2] = -1e30f;
+
+  const Volume result = resample(source, field, {.background = 4});
+
+  for (std::size_t i = 0; i < 16; ++i) {
+    const bool is_bad = i >= 5 && i <= 7;
+    EXPECT_EQ(result.samples<float>()[i], is_bad ? 4 : source.samples<float>()[i]) << i;
+  }
+}
+
+TEST(Resample, HasTheSameBitsForAnyNumberOfThreads) {
+  const Grid grid = scenes::unit_grid(33, 20, 19);
+  const DisplacementField field = field_of(turned(), grid);
+  for (const Filter filter : {Filter::nearest, Filter::linear, Filter::labels}) {
+    const Volume source = scenes::wavy_volume(grid, PixelType::uint16);
+    const Volume one = resample(source, field, {.filter = filter, .threads = 1});
+    EXPECT_EQ(resample(source, field, {.filter = filter, .threads = 3}).data, one.data);
+  }
+}
+
+TEST(Resample, NamesBadArguments) {
+  const Grid grid = scenes::unit_grid(4, 4, 4);
+  const Volume source = scenes::wavy_volume(grid, PixelType::int64);
+  const auto message = [&](const Transform& transform, const ResampleOptions& options) {
+    return message_of<std::invalid_argument>([&] { resample(source, transform, options); });
+  };
+  DisplacementField short_field = shift_field(grid, {0, 0, 0});
+  short_field.displacement.pop_back();
+  AffineTransform infinite;
+  infinite.offset[1] = std::numeric_limits<double>::infinity();
+
+  EXPECT_NE(message(short_field, {.filter = Filter::nearest}).find("three numbers"),
+            std::string::npos);
+  EXPECT_NE(message(infinite, {.filter = Filter::nearest}).find("is not finite"),
+            std::string::npos);
+  EXPECT_NE(message(AffineTransform{}, {.filter = Filter::linear}), "");
+  EXPECT_NE(message(AffineTransform{}, {.filter = Filter::nearest, .output_grid = Grid{}}), "");
+}
+
+}  // namespace
+}  // namespace tetwarp::test
