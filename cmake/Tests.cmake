@@ -19,6 +19,7 @@ add_library(tetwarp_support STATIC
   tests/oracles/triangle_intersection.cpp
   tests/support/contact_samples.cpp
   tests/support/contact_scenes.cpp
+  tests/support/contact_scenes_lattice.cpp
   tests/support/contact_scenes_slab.cpp
   tests/support/contact_scenes_tray.cpp
   tests/support/contact_transforms.cpp
