@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 KINDS = ("analytic", "position", "series", "overlap", "resident", "region", "chunks", "labels",
          "feature", "fields", "contact", "contact_skip", "contact_scale", "contact_coupling",
          "contact_method")
-METHODS = ("automatic", "newton", "anderson", "nonlinear_cg", "gauss_seidel", "mass_splitting")
+METHODS = ("automatic", "newton", "anderson", "nonlinear_cg", "gauss_seidel")
 MILLISECONDS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
 
 

@@ -63,8 +63,7 @@ void add_ball_joints(ContactProblem& problem, std::int64_t joints, double arm) {
     problem.bilateral.group_start.push_back(static_cast<std::int32_t>(3 * joint));
   }
   problem.bilateral.group_start.push_back(static_cast<std::int32_t>(3 * joints));
-  problem.bilateral.jacobian =
-      sparse_matrix(3 * joints, problem.dof_count(), std::move(entries));
+  problem.bilateral.jacobian = sparse_matrix(3 * joints, problem.dof_count(), std::move(entries));
 }
 
 }  // namespace tetwarp::scenes
