@@ -205,6 +205,7 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
     tests/contact/test_contact_stress.cpp
+    tests/contact/test_contact_stress_choice.cpp
     tests/contact/test_contact_stress_invariance.cpp
     tests/contact/test_contact_stress_stacks.cpp
     tests/contact/test_contact_stress_truth.cpp)

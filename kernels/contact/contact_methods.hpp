@@ -98,7 +98,7 @@ class ContactMethods {
       case ContactMethod::newton:
         break;
     }
-    if (anderson({64, 4, 0.6, 10}) != StopReason::stalled) return false;
+    if (anderson({52, 4, 0.6, 10}) != StopReason::stalled) return false;
     restore_best();
     conjugate_directions({48, 1, 0.5});
     return true;
