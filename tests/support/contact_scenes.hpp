@@ -100,9 +100,9 @@ struct Tray {
 };
 ContactProblem tray(const Tray& choice);
 
-/// Touching spheres on a cubic lattice in a box without a lid, as wide as high. Every sphere touches
-/// its six neighbors, the floor or the walls, with normals that are turned a little: contacts that
-/// hold each other in every direction, whose impulses are not unique.
+/// Touching spheres on a cubic lattice in a box without a lid, as wide as high. Every sphere
+/// touches its six neighbors, the floor or the walls, with normals that are turned a little:
+/// contacts that hold each other in every direction, whose impulses are not unique.
 struct BoxedLattice {
   std::uint32_t seed = 1;
   std::int64_t edge = 8;  ///< spheres along each edge of the lattice
