@@ -73,19 +73,22 @@ TEST(ContactChoice, ExpectsMoreNewtonStepsWhereFactorsFill) {
   EXPECT_EQ(newton_worth(infinity), infinity);
 }
 
-TEST(ContactChoice, ChangesSweepsThatAreSlowTwiceInARow) {
+TEST(ContactChoice, ChangesSweepsThatAreSlowThreeTimesInARow) {
   SweepChoice choice;
   const auto after = [&](std::int64_t spent, double left) {
     choice.note(spent, left);
     return choice.current();
   };
-  EXPECT_EQ(after(100, 500), ContactMethod::nonlinear_cg);
-  EXPECT_EQ(after(200, 300), ContactMethod::nonlinear_cg);
-  EXPECT_EQ(after(300, infinity), ContactMethod::nonlinear_cg);
-  EXPECT_EQ(after(400, 4000), ContactMethod::anderson);
-  EXPECT_EQ(after(500, 3000), ContactMethod::anderson);
-  EXPECT_EQ(after(600, 3500), ContactMethod::anderson) << "still quicker than conjugate directions";
-  EXPECT_EQ(after(700, 5000), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(100, 900), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(200, 1700), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(300, 300), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(400, infinity), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(500, infinity), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(600, 8000), ContactMethod::anderson);
+  EXPECT_EQ(after(700, 7000), ContactMethod::anderson);
+  EXPECT_EQ(after(800, 7000), ContactMethod::anderson);
+  EXPECT_EQ(after(850, 7900), ContactMethod::anderson) << "quicker than conjugate directions were";
+  EXPECT_EQ(after(900, 9000), ContactMethod::nonlinear_cg);
 }
 
 /// A stack needs some ten Newton steps, which cost less than the sweeps that would follow.

@@ -34,8 +34,8 @@ bool prefers_newton(double worth, std::int64_t spent, double left) {
 }
 
 void SweepChoice::note(std::int64_t spent, double left) {
-  slow_ = left > 4 * static_cast<double>(spent) ? slow_ + 1 : 0;
-  if (slow_ < 2 || left < other_left_) return;
+  slow_ = left > 8 * static_cast<double>(spent) ? slow_ + 1 : 0;
+  if (slow_ < 3 || left < other_left_) return;
   slow_ = 0;
   other_left_ = left;
   current_ =

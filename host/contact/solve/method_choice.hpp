@@ -38,8 +38,8 @@ class SweepChoice {
  public:
   ContactMethod current() const { return current_; }
 
-  /// Chooses the next sweeps: the other ones after the present ones have been slow twice in a row,
-  /// unless the other ones were slower when they last ran.
+  /// Chooses the next sweeps: the other ones after the present ones have been slow three times in a
+  /// row, unless the other ones were slower when they last ran.
   /// @param spent  sweeps so far
   /// @param left   of sweeps_left(), by the present ones
   void note(std::int64_t spent, double left);
