@@ -3,7 +3,7 @@
 # Writes times to build/bench/results, pictures to build/bench/plots and tables to
 # build/bench/results.md. --peers also measures other programs (see bench/peers/README.md);
 # --install installs what these need; other options go to the benchmark programs. Environment:
-#   TETWARP_FCLIB_DATA  folder of recorded contact problems (*.hdf5)
+#   TETWARP_FCLIB_DATA  folders of recorded contact problems (*.hdf5), colons between them
 #   TETWARP_PEERS       output of bench/peers/siconos_nsgs.py on this machine
 #   TETWARP_GPU_PEERS   output of bench/peers/gpu_samplers.py on this machine
 
@@ -51,7 +51,8 @@ bench_peers() {
   bench_cantilever
   "$python" -c 'import siconos.numerics, h5py, scipy' 2>/dev/null || return 0
   "$folder/tetwarp_bench_contact" --export="$problems"
-  [[ -z ${TETWARP_FCLIB_DATA:-} ]] || cp "$TETWARP_FCLIB_DATA"/*.hdf5 "$problems"
+  while read -r -d : folder_of_files; do cp "$folder_of_files"/*.hdf5 "$problems"; done \
+    <<<"${TETWARP_FCLIB_DATA:+$TETWARP_FCLIB_DATA:}"
   "$python" "$root/bench/peers/siconos_nsgs.py" "$problems"/*.hdf5 | tee "$results-siconos.log"
   TETWARP_PEERS=$results-siconos.log
 }

@@ -109,6 +109,7 @@ if(TETWARP_IO)
     bench/measure/row.cpp
     bench/measure/timing.cpp
     tests/support/contact_scenes.cpp
+    tests/support/contact_scenes_lattice.cpp
     tests/support/contact_scenes_slab.cpp
     tests/support/contact_scenes_tray.cpp
     tests/support/scenes.cpp)

@@ -19,6 +19,7 @@ add_library(tetwarp_support STATIC
   tests/oracles/triangle_intersection.cpp
   tests/support/contact_samples.cpp
   tests/support/contact_scenes.cpp
+  tests/support/contact_scenes_lattice.cpp
   tests/support/contact_scenes_slab.cpp
   tests/support/contact_scenes_tray.cpp
   tests/support/contact_transforms.cpp
@@ -207,6 +208,7 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
     tests/contact/test_contact_stress.cpp
+    tests/contact/test_contact_stress_choice.cpp
     tests/contact/test_contact_stress_invariance.cpp
     tests/contact/test_contact_stress_stacks.cpp
     tests/contact/test_contact_stress_truth.cpp)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include <tetwarp/io.hpp>
 #include <tetwarp/names.hpp>
@@ -42,18 +43,58 @@ ContactInput small_slab() {
   return {"slab_small", [] { return scenes::elastic_slab({.cubes = {8, 6, 3}, .contacts = 40}); }};
 }
 
-std::vector<ContactInput> recorded(const std::string& folder) {
+/// Spheres in pairs, held together by ball joints.
+ContactInput linked_packing() {
+  return {"packing_1k_linked", [] {
+            ContactProblem problem = scenes::sphere_packing({.edge = 6});
+            scenes::add_ball_joints(problem, 108, 0.05);
+            return problem;
+          }};
+}
+
+ContactInput jam(const std::string& name, const scenes::Jam& choice) {
+  return {name, [choice] { return scenes::jam(choice); }};
+}
+
+ContactInput lattice(const std::string& name, const scenes::BoxedLattice& choice) {
+  return {name, [choice] { return scenes::boxed_lattice(choice); }};
+}
+
+std::vector<ContactInput> recorded(const std::string& folders) {
   std::vector<ContactInput> inputs;
-  if (folder.empty()) return inputs;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    const std::filesystem::path& path = file.path();
-    if (path.extension() != ".hdf5") continue;
-    inputs.push_back(
-        {path.stem().string(), [text = path.string()] { return read_contact_problem(text); }});
+  std::istringstream list(folders);
+  for (std::string folder; std::getline(list, folder, ':');) {
+    for (const auto& file : std::filesystem::directory_iterator(folder)) {
+      const std::filesystem::path& path = file.path();
+      if (path.extension() != ".hdf5") continue;
+      inputs.push_back(
+          {path.stem().string(), [text = path.string()] { return read_contact_problem(text); }});
+    }
   }
   std::sort(inputs.begin(), inputs.end(),
             [](const ContactInput& a, const ContactInput& b) { return a.name < b.name; });
   return inputs;
+}
+
+/// Problems on which single methods differ the most, beside those of contact_inputs().
+std::vector<ContactInput> hard_inputs() {
+  return {
+      stack("stack_6_ratio_3^5", {.boxes = 6, .mass_ratio = 243}),
+      stack("stack_20", {.boxes = 20}),
+      jam("jam_48", {}),
+      jam("jam_150",
+          {.seed = 3, .bodies = 30, .contacts = 150, .mass_ratio = 1e4, .friction = 0.5}),
+      jam("jam_48_glued", {.glue = {.stiffness = 1e7}}),
+      packing("packing_touching_mu_0.3", {.edge = 4, .friction = 0.3, .gaps = 0}),
+      packing("packing_touching_mu_0.5", {.edge = 4, .friction = 0.5, .gaps = 0}),
+      packing("packing_1k_mu_0.8", {.edge = 6, .friction = 0.8}),
+      packing("packing_1k_glued", {.edge = 6, .glue = {.stiffness = 1e7}}),
+      linked_packing(),
+      lattice("lattice_90", {.edge = 3}),
+      lattice("lattice_720_mu_0.5", {.edge = 6, .friction = 0.5}),
+      lattice("lattice_1664", {}),
+      lattice("lattice_3200", {.edge = 10}),
+  };
 }
 
 /// A switch of ContactSkipOptions and a scene that has work for it to leave out.
@@ -83,9 +124,10 @@ std::vector<SkipChoice> skip_choices() {
   };
 }
 
+/// Methods of the command.
 constexpr ContactMethod methods[] = {ContactMethod::gauss_seidel, ContactMethod::nonlinear_cg,
-                                     ContactMethod::anderson,     ContactMethod::mass_splitting,
-                                     ContactMethod::newton,       ContactMethod::automatic};
+                                     ContactMethod::anderson, ContactMethod::newton,
+                                     ContactMethod::automatic};
 
 std::vector<double> tolerances(Extent extent, ContactPrecision precision) {
   if (precision == ContactPrecision::float32) {
@@ -179,6 +221,25 @@ class Rows {
     }
   }
 
+  /// Every method of the command on one thread, with both rules where springs differ by them.
+  void add_methods(const ContactInput& input) {
+    for (const AdhesionRule rule : {AdhesionRule::parallel, AdhesionRule::restrictive}) {
+      for (const ContactMethod method : methods) {
+        for (const double tolerance : {1e-4, 1e-6}) {
+          ContactOptions options = options_for(tolerance);
+          options.rule = rule;
+          options.method = method;
+          options.threads = 1;
+          options.max_newton = 400;
+          rows_.push_back({.kind = ContactKind::method,
+                           .input = input,
+                           .options = options,
+                           .max_updates = 100'000'000});
+        }
+      }
+    }
+  }
+
   std::vector<ContactCase> take() { return std::move(rows_); }
 
  private:
@@ -210,7 +271,7 @@ const char* word_of(ContactVisit visit) {
 
 const char* word_of(ContactKind kind) {
   static constexpr const char* words[] = {"contact", "contact_skip", "contact_scale",
-                                          "contact_coupling"};
+                                          "contact_coupling", "contact_method"};
   return words[static_cast<int>(kind)];
 }
 
@@ -231,10 +292,11 @@ std::string name_of(const ContactCase& row) {
   if (options.expert.coupling != ContactCoupling::automatic) {
     name += fmt::format("/coupling:{}", tetwarp::name_of(options.expert.coupling));
   }
+  if (options.rule != AdhesionRule::parallel) name += "/rule:restrictive";
   return name;
 }
 
-std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib_folder) {
+std::vector<ContactInput> contact_inputs(Extent extent, const std::string& folders) {
   std::vector<ContactInput> inputs = {
       stack("stack_10", {.boxes = 10}),
       packing("packing_1k", {.edge = 6}),
@@ -249,16 +311,16 @@ std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib
     inputs.push_back(slab(151));
     inputs.push_back(slab(531));
   }
-  for (ContactInput& input : recorded(fclib_folder)) inputs.push_back(std::move(input));
+  for (ContactInput& input : recorded(folders)) inputs.push_back(std::move(input));
   return inputs;
 }
 
 std::vector<ContactCase> contact_cases(Extent extent,
                                        int threads,
-                                       const std::string& fclib_folder,
+                                       const std::string& folders,
                                        bool with_cuda) {
   Rows rows(extent, threads);
-  for (const ContactInput& input : contact_inputs(extent, fclib_folder)) rows.add_work(input);
+  for (const ContactInput& input : contact_inputs(extent, folders)) rows.add_work(input);
   for (const std::int64_t contacts : {151, 531}) {
     rows.add_visits(slab(contacts));
     rows.add_couplings(slab(contacts));
@@ -268,8 +330,12 @@ std::vector<ContactCase> contact_cases(Extent extent,
     rows.add_scale(packing(fmt::format("packing_edge_{}", edge), {.edge = edge}));
   }
   for (const std::int64_t edge : {32, 64, 128}) rows.add_scale(tray(edge));
+  if (extent == Extent::full) {
+    for (const ContactInput& input : contact_inputs(extent, folders)) rows.add_methods(input);
+    for (const ContactInput& input : hard_inputs()) rows.add_methods(input);
+  }
   if (!with_cuda) return rows.take();
-  for (const ContactInput& input : contact_inputs(Extent::brief, fclib_folder)) {
+  for (const ContactInput& input : contact_inputs(Extent::brief, folders)) {
     rows.add_device(input);
   }
   rows.add_device(slab(531));

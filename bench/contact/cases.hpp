@@ -25,6 +25,7 @@ enum class ContactKind {
   skip,      ///< with one switch of ContactSkipOptions off, and with all switches on
   scale,     ///< problems of one kind, smaller and larger
   coupling,  ///< elastic bodies, iterated and condensed
+  method,    ///< processor time of every method on one thread, by eta
 };
 
 /// Which solve of a solver is timed.
@@ -46,20 +47,21 @@ struct ContactCase {
 
 /// contact/packing_1k/anderson/float64/cpu/threads:2/tolerance:1e-04, on a device cuda instead of
 /// cpu/threads:2; other kinds are contact_skip,
-/// contact_scale and contact_coupling; then, where not the default, /visit:kept,
-/// /without:frozen_contacts and /coupling:condensed.
+/// contact_scale, contact_coupling and contact_method; then, where not the default, /visit:kept,
+/// /without:frozen_contacts, /coupling:condensed and /rule:restrictive.
 std::string name_of(const ContactCase& row);
 
-/// Problems of all methods: stacks, packings, elastic blocks, then those of the folder.
-std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib_folder);
+/// Problems of all methods: stacks, packings, elastic blocks, then those of the folders.
+/// @param folders  of recorded problems, *.hdf5, with colons between them; empty: none
+std::vector<ContactInput> contact_inputs(Extent extent, const std::string& folders);
 
 /// The rows for a processor with `threads` threads, those of one problem next to each other, loose
 /// tolerances first.
-/// @param fclib_folder  of recorded problems, *.hdf5; empty: none
-/// @param with_cuda     adds rows of back end cuda
+/// @param folders    as in contact_inputs()
+/// @param with_cuda  adds rows of back end cuda
 std::vector<ContactCase> contact_cases(Extent extent,
                                        int threads,
-                                       const std::string& fclib_folder,
+                                       const std::string& folders,
                                        bool with_cuda = false);
 
 }  // namespace tetwarp::bench

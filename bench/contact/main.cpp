@@ -3,10 +3,10 @@
 /// and velocities.
 ///
 /// Runs the short list of rows; with --full, or with Google Benchmark's --benchmark_filter, all
-/// rows are registered. The environment variable TETWARP_FCLIB_DATA names a folder of recorded
-/// problems (*.hdf5) that are added to the generated ones. --export=FOLDER writes the generated
-/// problems without adhesion to that folder instead, as input of other solvers. rows.hpp lists the
-/// counters. Exit code 1 when a result was wrong.
+/// rows are registered. The environment variable TETWARP_FCLIB_DATA names folders of recorded
+/// problems (*.hdf5), with colons between them, that are added to the generated ones.
+/// --export=FOLDER writes the generated problems without adhesion to that folder instead, as input
+/// of other solvers. rows.hpp lists the counters. Exit code 1 when a result was wrong.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

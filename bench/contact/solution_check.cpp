@@ -59,8 +59,7 @@ ContactMeasure measure_of(const ContactProblem& problem) {
 SolutionCheck check_solution(const ContactProblem& problem,
                              const ContactSolution& solution,
                              const ContactOptions& options) {
-  return check_residual(residual_of(problem, solution.impulse, solution.body_velocity, options),
-                        problem, solution, options);
+  return check_residual(residual_of(problem, solution, options), problem, solution, options);
 }
 
 SolutionCheck check_report(const ContactProblem& problem,

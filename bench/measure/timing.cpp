@@ -53,6 +53,7 @@ Timing timing_of(const std::vector<Repetition>& all, const Protocol& protocol) {
     if (!timing.contended && !counts(one, protocol)) continue;
     walls.push_back(one.wall);
     busy.push_back(one.busy);
+    timing.processor = std::min(timing.processor, one.wall * one.busy);
   }
   std::sort(walls.begin(), walls.end());
   std::sort(busy.begin(), busy.end());

@@ -2,6 +2,7 @@
 /// Medians of jobs timed in turn; repetitions that had too little processor time do not count.
 #pragma once
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,9 @@ struct Timing {
   double min = 0;
   int kept = 0;
   int discarded = 0;
-  double busy = 0;         ///< median of processor time over wall time
+  double busy = 0;  ///< median of processor time over wall time
+  double processor = std::numeric_limits<double>::infinity();  ///< least time of a repetition, of
+                                                               ///< all processors together [s]
   bool contended = false;  ///< fewer than half of `repetitions` counted, so all of them are used
 };
 

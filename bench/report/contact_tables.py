@@ -72,6 +72,44 @@ def scale_table(solves):
     return table(columns, (s for s in solves if s.kind == "contact_scale"))
 
 
+def method_table(solves):
+    """Processor time, sweeps (or outer iterations) and Newton steps of every method on one thread."""
+    lines = {}
+    for solve in (s for s in solves if s.kind == "contact_method"):
+        lines.setdefault((solve.workload, solve.rule, solve.tolerance), {})[solve.method] = solve
+    names = methods_of([solve for line in lines.values() for solve in line.values()])
+    reached = lambda line: {name: s for name, s in line.items() if s["converged"]}
+
+    def method(name):
+        def text(item):
+            solve = reached(item[1]).get(name)
+            if not solve:
+                return "-"
+            steps = f"{solve['outer_iterations'] or solve['sweeps']:.0f}"
+            if solve["newton_iterations"]:
+                steps += f" + {solve['newton_iterations']:.0f}"
+            return f"{figure(solve['processor'])} ({steps})"
+
+        return name, text
+
+    def over_best(item):
+        times = {name: solve["processor"] for name, solve in reached(item[1]).items()}
+        own = times.pop("automatic", None)
+        return f"{own / min(times.values()):.2f}" if own and times else ""
+
+    def residual(item):
+        solve = item[1].get("automatic")
+        return figure(solve["eta"], 2) if solve else ""
+
+    anyone = lambda item: next(iter(item[1].values()))
+    columns = [("problem", lambda item: item[0][0] + (", restrictive" if item[0][1] != "parallel" else "")),
+               ("contacts", lambda item: f"{anyone(item)['contacts']:.0f}"),
+               ("to eta", lambda item: f"{item[0][2]:.0e}")]
+    columns += [method(name) for name in names]
+    columns += [("eta of automatic", residual), ("over best", over_best)]
+    return table(columns, lines.items())
+
+
 def sections(solves, peers):
     """(title, lines) of all tables that have rows. Other solvers join the work tables."""
     work = work_solves(solves)
@@ -80,5 +118,6 @@ def sections(solves, peers):
     tables = [(f"Time to {t:.0e}", work_table(work, t)) for t in (1e-4, 1e-8)]
     tables += [("First and following solves", visit_table(solves)),
                ("Elastic bodies", coupling_table(solves)),
-               ("What skipping saves", skip_table(solves)), ("Size", scale_table(solves))]
+               ("What skipping saves", skip_table(solves)), ("Size", scale_table(solves)),
+               ("Methods, ms of a processor (sweeps + Newton steps)", method_table(solves))]
     return [("Contact: " + title, lines) for title, lines in tables]

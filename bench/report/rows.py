@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 KINDS = ("analytic", "position", "series", "overlap", "resident", "copies", "staging", "paper",
          "region", "chunks", "labels", "feature", "fields", "contact", "contact_skip", "contact_scale",
-         "contact_coupling")
-METHODS = ("automatic", "newton", "anderson", "nonlinear_cg", "gauss_seidel", "mass_splitting")
+         "contact_coupling", "contact_method")
+METHODS = ("automatic", "newton", "anderson", "nonlinear_cg", "gauss_seidel")
 MILLISECONDS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
 
 
@@ -26,6 +26,7 @@ class Row:
     moved: int = 0  # percent of the nodes, in a series
     tolerance: float = 0.0
     visit: str = "first"  # which solve: first, kept or warm
+    rule: str = "parallel"  # how friction and adhesion combine
     coupling: str = "automatic"  # of elastic bodies: automatic, iterated or condensed
     time: float = 0.0  # median [ms]
     low: float = 0.0  # lower and upper quartile [ms]

@@ -53,13 +53,11 @@ template <>
 constexpr EnumName<AdhesionRule> words<AdhesionRule>[] = {
     {AdhesionRule::parallel, "parallel"}, {AdhesionRule::restrictive, "restrictive"}};
 template <>
-constexpr EnumName<ContactMethod> words<ContactMethod>[] = {
-    {ContactMethod::automatic, "auto"},
-    {ContactMethod::gauss_seidel, "gs"},
-    {ContactMethod::nonlinear_cg, "nncg"},
-    {ContactMethod::anderson, "anderson"},
-    {ContactMethod::mass_splitting, "mass-splitting"},
-    {ContactMethod::newton, "newton"}};
+constexpr EnumName<ContactMethod> words<ContactMethod>[] = {{ContactMethod::automatic, "auto"},
+                                                            {ContactMethod::gauss_seidel, "gs"},
+                                                            {ContactMethod::nonlinear_cg, "nncg"},
+                                                            {ContactMethod::anderson, "anderson"},
+                                                            {ContactMethod::newton, "newton"}};
 template <>
 constexpr EnumName<ContactCoupling> words<ContactCoupling>[] = {
     {ContactCoupling::automatic, "auto"},

@@ -54,8 +54,8 @@ enum class AdhesionRule {
 ///
 /// This converges if omega lambda_max(D^-1 A) < 2, which omega = 0.5 satisfies for meshes of
 /// tetrahedra. Anderson acceleration is applied to v; ContactMethod::nonlinear_cg uses conjugate
-/// directions instead, `gauss_seidel` no acceleration. ContactMethod `mass_splitting` and `newton`
-/// always condense. For an iterated island, eta is an upper bound of what residual_of() computes
+/// directions instead, `gauss_seidel` no acceleration. ContactMethod `newton`
+/// always condenses. For an iterated island, eta is an upper bound of what residual_of() computes
 /// (an estimate where one body has several contacts), because the exact value needs a factorization
 /// of A.
 /// Source: Otaduy et al. 2009 (iterative constraint anticipation).
@@ -109,7 +109,8 @@ struct ContactOptions {
   ContactMethod method = ContactMethod::automatic;  ///< others are for comparisons
   ContactMeasure measure = ContactMeasure::eta;     ///< what `tolerance` bounds
   double tolerance = 1e-6;                          ///< of `measure`, relative, > 0
-  std::int64_t max_sweeps = 20000;  ///< passes over all contacts of an island, of all methods, >= 1
+  std::int64_t max_sweeps = 100000;  ///< passes over all contacts of an island, of all methods,
+                                     ///< >= 1
   double recovery_speed = std::numeric_limits<double>::infinity();  ///< existing penetration is
                                                                     ///< undone at most this fast
                                                                     ///< [m/s], >= 0

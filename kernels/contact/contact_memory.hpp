@@ -46,9 +46,7 @@ class MethodMemory {
     before_.reserve(rows);
     best_.reserve(rows);
     mixed_.reserve(mixed);
-    metric_.reserve(slots);
-    return {weights_.view(rows), before_.view(rows), best_.view(rows), mixed_.view(mixed),
-            metric_.view(slots)};
+    return {weights_.view(rows), before_.view(rows), best_.view(rows), mixed_.view(mixed)};
   }
 
  private:
@@ -57,7 +55,6 @@ class MethodMemory {
 
   Buffer<double> weights_;
   Buffer<T> before_, best_, mixed_;
-  Buffer<ContactConstants<T>> metric_;
 };
 
 }  // namespace tetwarp

@@ -1,6 +1,5 @@
 /// @file contact_methods.hpp
-/// Methods for one island whose blocks A does not couple: sweeps, plain or accelerated, and mass
-/// splitting.
+/// Methods for one island whose blocks A does not couple: sweeps, plain or accelerated.
 #pragma once
 #include <cstdint>
 
@@ -33,19 +32,17 @@ template <class T>
 struct MethodWork {
   static constexpr int columns = AndersonMixer<int, T>::columns;
 
-  View<double> weights;              ///< [3 slots]
-  View<T> before, best;              ///< impulses before the last step; the best so far; [3 slots]
-  View<T> mixed;                     ///< [columns][3 slots], island after island
-  View<ContactConstants<T>> metric;  ///< constants of mass splitting, [slots]
+  View<double> weights;  ///< [3 slots]
+  View<T> before, best;  ///< impulses before the last step; the best so far; [3 slots]
+  View<T> mixed;         ///< [columns][3 slots], island after island
 
-  /// The views of one island, but `metric` of all islands.
+  /// The views of one island.
   TETWARP_HD MethodWork of(const ContactIsland& island) const {
     const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
     return {{weights.data + first, size},
             {before.data + first, size},
             {best.data + first, size},
-            {mixed.data + columns * first, columns * size},
-            metric};
+            {mixed.data + columns * first, columns * size}};
   }
 };
 
@@ -54,27 +51,6 @@ struct MethodWork {
 template <class Exec, class T, class Log>
 class ContactMethods {
  public:
-  /// One index = one entry: product of gradient and last step; the step was uphill where the sum is
-  /// positive.
-  struct SlopeOp {
-    View<const double> weights;
-    View<const T> before, x, last;
-    TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
-      const T step = x[i] - last[i];
-      return {{weights[i] * (double{before[i]} - double{x[i]}) * step}};
-    }
-  };
-  /// One index = one entry: x += factor (x - last), and last becomes the old x.
-  struct MomentumOp {
-    T factor;
-    View<T> last, x;
-    TETWARP_HD void operator()(std::int64_t i) const {
-      const T now = x[i];
-      x[i] += factor * (now - last[i]);
-      last[i] = now;
-    }
-  };
-
   /// @param work  views of the whole problem
   TETWARP_ANY_EXEC ContactMethods(ContactPipeline<Exec, T>& pipeline,
                                   ConvergenceTest<Log>& convergence,
@@ -103,43 +79,6 @@ class ContactMethods {
     return iterate<ConjugateDirection<Exec, T>>(patience, {});
   }
 
-  /// Solves all contacts at once in the metric of split masses (see contact_split.hpp), with
-  /// Nesterov's acceleration, which restarts after an uphill step.
-  TETWARP_ANY_EXEC StopReason mass_splitting(const Patience& patience) {
-    convergence_.start_method(patience);
-    pipeline_.split_metric(work_.metric);
-    const View<T> x = pipeline_.impulse();
-    const View<T> last = {work_.mixed.data, x.size};
-    exec().copy("contact/mix", View<const T>(x), last);
-    double momentum = 1;
-    PlainSteps<Exec, T> steps(exec(), work_.weights, {});
-    while (!convergence_.is_exhausted()) {
-      exec().copy("contact/mix", View<const T>(x), work_.before);
-      pipeline_.split(work_.metric);
-      convergence_.count_sweep();
-      if (is_sync_point()) {
-        steps.observe(work_.before, x);
-        const double defect = steps.defect();
-        if (convergence_.is_due(defect)) {
-          pipeline_.follow_impulses();
-          if (measure(defect)) break;
-        }
-      }
-      const double uphill =
-          exec()
-              .template sum<PlainSums<1>>("contact/mix", 0, x.size,
-                                          SlopeOp{work_.weights, work_.before, x, last})
-              .value[0];
-      if (uphill > 0) momentum = 1;
-      const double next = (1 + sqrt(1 + 4 * momentum * momentum)) / 2;
-      const T factor = uphill > 0 ? T(0) : static_cast<T>((momentum - 1) / next);
-      momentum = next;
-      exec().for_each("contact/mix", x.size, MomentumOp{factor, last, x});
-      pipeline_.follow_impulses();
-    }
-    return convergence_.reason();
-  }
-
   /// Runs a method. `automatic` and `newton`, which starts from the result, use Anderson
   /// acceleration and, if it stalls, conjugate directions from the best iterate.
   /// @param frozen  contacts that plain sweeps may skip
@@ -155,14 +94,11 @@ class ContactMethods {
       case ContactMethod::anderson:
         anderson({});
         return false;
-      case ContactMethod::mass_splitting:
-        mass_splitting({});
-        return false;
       case ContactMethod::automatic:
       case ContactMethod::newton:
         break;
     }
-    if (anderson({64, 4, 0.6, 10}) != StopReason::stalled) return false;
+    if (anderson({52, 4, 0.6, 10}) != StopReason::stalled) return false;
     restore_best();
     conjugate_directions({48, 1, 0.5});
     return true;

@@ -8,7 +8,6 @@
 #include "kernels/contact/body_relax.hpp"
 #include "kernels/contact/contact_numbers.hpp"
 #include "kernels/contact/contact_residual.hpp"
-#include "kernels/contact/contact_split.hpp"
 #include "kernels/contact/contact_sweep.hpp"
 #include "kernels/contact/vector_bodies.hpp"
 
@@ -65,26 +64,6 @@ class ContactPipeline {
                     BodySweepOp<T>{numbers_.bodies, numbers_.constants, switches_, frozen,
                                    state_.impulse, state_.body_velocity});
     }
-  }
-
-  /// Copies the constants of the contacts and replaces their blocks by the metric of split masses.
-  /// @param metric  out, [slots]; only the island's part
-  TETWARP_ANY_EXEC void split_metric(View<ContactConstants<T>> metric) {
-    exec_.copy("contact/sweep", constants(),
-               View<ContactConstants<T>>{metric.data + island_.slot_begin, constants().size});
-    if (numbers_.is_local) {
-      run_contacts(DelassusSplitMetricOp<T>{numbers_.delassus, metric});
-    } else {
-      run_contacts(BodySplitMetricOp<T>{numbers_.bodies, numbers_.block_contacts.start, metric});
-    }
-    run_contacts(ContactMetricOp<T>{metric});
-  }
-
-  /// Solves every contact separately, all from the same velocities.
-  /// @param metric  of split_metric()
-  TETWARP_ANY_EXEC void split(View<const ContactConstants<T>> metric) {
-    find_velocities();
-    run_contacts(ContactSplitOp<T>{metric, switches_, state_.velocity, state_.impulse});
   }
 
   /// Sets v to the velocities of r; required after r was changed by anything but a sweep.

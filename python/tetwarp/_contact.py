@@ -185,7 +185,7 @@ class ContactSolver:
         method: str = "auto",
         measure: str = "eta",
         tolerance: float = 1e-6,
-        max_sweeps: int = 20000,
+        max_sweeps: int = 100000,
         recovery_speed: float = np.inf,
         max_seconds: float = np.inf,
         backend: str = "auto",

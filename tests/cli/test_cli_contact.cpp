@@ -204,7 +204,6 @@ TEST_F(ContactCommand, FindsTheSameVelocitiesByEveryMethod) {
   for (const Names& words : std::vector<Names>{{"--solver", "gs"},
                                                {"--solver", "nncg"},
                                                {"--solver", "anderson"},
-                                               {"--solver", "mass-splitting"},
                                                {"--solver", "newton"},
                                                {"--precision", "single", "--tolerance", "1e-5"},
                                                {"--no-skip", "all"},

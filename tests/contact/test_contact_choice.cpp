@@ -57,14 +57,38 @@ TEST(ContactChoice, CountsTheFillOfAFactorization) {
             sweeps_per_newton_step(dense, packing.contact_count()));
 }
 
-TEST(ContactChoice, LeavesSweepsTheEarlierTheSlowerTheyConverge) {
-  EXPECT_FALSE(prefers_newton(1000, 990, 900));
-  EXPECT_TRUE(prefers_newton(1000, 1010, 900));
-  EXPECT_FALSE(prefers_newton(1000, 330, infinity));
-  EXPECT_TRUE(prefers_newton(1000, 340, infinity));
-  EXPECT_FALSE(prefers_newton(1000, 600, 1100));
-  EXPECT_TRUE(prefers_newton(1000, 610, 1100));
+TEST(ContactChoice, LeavesSweepsThatPromiseToTakeLongerThanATrialThatMayFail) {
+  EXPECT_FALSE(prefers_newton(1000, 5000, 900));
+  EXPECT_FALSE(prefers_newton(1000, 1300, 1100));
+  EXPECT_TRUE(prefers_newton(1000, 1500, 1100));
+  EXPECT_FALSE(prefers_newton(1000, 220, infinity));
+  EXPECT_TRUE(prefers_newton(1000, 230, infinity));
   EXPECT_FALSE(prefers_newton(infinity, 100000, infinity));
+}
+
+TEST(ContactChoice, ExpectsMoreNewtonStepsWhereFactorsFill) {
+  EXPECT_EQ(newton_worth(20), 20);
+  EXPECT_EQ(newton_worth(30), 30);
+  EXPECT_EQ(newton_worth(60), 4 * 60);
+  EXPECT_EQ(newton_worth(infinity), infinity);
+}
+
+TEST(ContactChoice, ChangesSweepsThatAreSlowThreeTimesInARow) {
+  SweepChoice choice;
+  const auto after = [&](std::int64_t spent, double left) {
+    choice.note(spent, left);
+    return choice.current();
+  };
+  EXPECT_EQ(after(100, 900), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(200, 1700), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(300, 300), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(400, infinity), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(500, infinity), ContactMethod::nonlinear_cg);
+  EXPECT_EQ(after(600, 8000), ContactMethod::anderson);
+  EXPECT_EQ(after(700, 7000), ContactMethod::anderson);
+  EXPECT_EQ(after(800, 7000), ContactMethod::anderson);
+  EXPECT_EQ(after(850, 7900), ContactMethod::anderson) << "quicker than conjugate directions were";
+  EXPECT_EQ(after(900, 9000), ContactMethod::nonlinear_cg);
 }
 
 /// A stack needs some ten Newton steps, which cost less than the sweeps that would follow.

@@ -100,6 +100,22 @@ struct Tray {
 };
 ContactProblem tray(const Tray& choice);
 
+/// Touching spheres on a cubic lattice in a box without a lid, as wide as high. Every sphere
+/// touches its six neighbors, the floor or the walls, with normals that are turned a little:
+/// contacts that hold each other in every direction, whose impulses are not unique.
+struct BoxedLattice {
+  std::uint32_t seed = 1;
+  std::int64_t edge = 8;  ///< spheres along each edge of the lattice
+  double friction = 0.3;
+  double turn = 0.1;  ///< of the normals, at most [rad]
+  double time_step = 0.01;
+};
+ContactProblem boxed_lattice(const BoxedLattice& choice);
+
+/// Joins bodies 2 k and 2 k + 1 of six dofs each, at a point of either: three bilateral rows.
+/// @param joints  number of such pairs
+void add_ball_joints(ContactProblem& problem, std::int64_t joints, double arm);
+
 /// Two scenes in one, without contacts between them.
 /// @param b  in global form like `a`, without contacts
 ContactProblem beside(ContactProblem a, const ContactProblem& b);

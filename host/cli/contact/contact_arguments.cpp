@@ -41,7 +41,7 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
   add_choice(app, "--measure", options.measure, choices_of<ContactMeasure>(),
              "what the tolerance bounds: energy-weighted residual or FCLIB's error [eta]");
   app.add_option("--max-sweeps", options.max_sweeps,
-                 "maximum number of passes over all contacts [20000]")
+                 "maximum number of passes over all contacts [100000]")
       ->check(at_least(1, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
   app.add_option("--max-seconds", options.max_seconds,

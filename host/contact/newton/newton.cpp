@@ -166,8 +166,8 @@ void NewtonPolish::run(const VectorXd& start, const NewtonLimits& limits) {
   total_limit_ = limits.total;
   const std::int64_t limit = std::min(limits.shared, max_newton_steps(std::ssize(contacts_)));
   Approach approach{.center = best_};
-  advance(approach, limit / 4, first_patience);
-  if (is_settled()) return;
+  if (limits.phases != NewtonPhases::far) advance(approach, limit / 4, first_patience);
+  if (limits.phases == NewtonPhases::near || is_settled()) return;
   if (has_only_contacts_) solve_associated(limit - limit / 4);
   if (is_settled()) return;
   advance(approach, limit - limit / 4);

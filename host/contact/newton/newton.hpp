@@ -18,12 +18,20 @@ struct NewtonResult {
   bool converged = false;  ///< options.measure is at most options.tolerance
 };
 
+/// Which phases of newton_polish() run.
+enum class NewtonPhases {
+  near,  ///< the proximal points from the start, until ten linear systems do not halve the error
+  far,   ///< other starts, and more proximal points
+  all
+};
+
 /// Linear systems at most.
 struct NewtonLimits {
   static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
   std::int64_t shared = none;  ///< shared out between the phases; up to about twice as many in all;
                                ///< a smaller limit follows from the number of contacts
   std::int64_t total = none;   ///< of all phases; exceeded by at most a dozen
+  NewtonPhases phases = NewtonPhases::all;
 };
 
 /// Limit of the linear systems of newton_polish() for a number of contacts, shared out between its

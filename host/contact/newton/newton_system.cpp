@@ -52,20 +52,35 @@ NewtonSystem::NewtonSystem(const ContactProblem& problem, const Delassus& delass
     : delassus_(delassus), is_local_(problem.is_local()) {
   if (is_local_) {
     delassus_matrix_ = make_eigen(problem.delassus);
+    if (delassus_matrix_.rows() < dense_limit) dense_delassus_ = delassus_matrix_;
     return;
   }
   jacobian_ = make_eigen(problem.jacobian);
   assembly_ = ContactAssembly(make_eigen(problem.system), jacobian_);
 }
 
-/// E + F B, or A + J^T E^-1 F J.
-const Matrix& NewtonSystem::assemble(const std::vector<MapDerivative>& derivatives) {
+void NewtonSystem::keep(const std::vector<MapDerivative>& derivatives) {
   by_impulse_.clear();
   by_velocity_.clear();
   for (const MapDerivative& derivative : derivatives) {
     by_impulse_.push_back(derivative.by_impulse);
     by_velocity_.push_back(derivative.by_velocity);
   }
+}
+
+/// E + F B of few contacts in local form.
+Eigen::MatrixXd NewtonSystem::dense_sum() const {
+  Eigen::MatrixXd sum(dense_delassus_.rows(), dense_delassus_.cols());
+  for (std::size_t c = 0; c < by_impulse_.size(); ++c) {
+    const Index row = 3 * static_cast<Index>(c);
+    sum.middleRows<3>(row).noalias() = by_velocity_[c] * dense_delassus_.middleRows<3>(row);
+    sum.block<3, 3>(row, row) += by_impulse_[c];
+  }
+  return sum;
+}
+
+/// E + F B, or A + J^T E^-1 F J.
+const Matrix& NewtonSystem::assemble() {
   if (is_local_) {
     local_sum_ =
         make_block_diagonal(by_impulse_) + make_block_diagonal(by_velocity_) * delassus_matrix_;
@@ -73,7 +88,7 @@ const Matrix& NewtonSystem::assemble(const std::vector<MapDerivative>& derivativ
   }
   impulse_inverse_.clear();
   response_.clear();
-  for (std::size_t c = 0; c < derivatives.size(); ++c) {
+  for (std::size_t c = 0; c < by_impulse_.size(); ++c) {
     impulse_inverse_.push_back(by_impulse_[c].inverse());
     response_.push_back(impulse_inverse_[c] * by_velocity_[c]);
   }
@@ -81,13 +96,15 @@ const Matrix& NewtonSystem::assemble(const std::vector<MapDerivative>& derivativ
 }
 
 bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
-  const Matrix& matrix = assemble(derivatives);
-  factor_ = matrix.rows() < dense_limit ? Factor::dense : Factor::general;
+  keep(derivatives);
+  const Index size = is_local_ ? delassus_matrix_.rows() : jacobian_.cols();
+  factor_ = size < dense_limit ? Factor::dense : Factor::general;
   if (factor_ == Factor::dense) {
-    dense_factor_.compute(matrix);
+    is_local_ ? dense_factor_.compute(dense_sum()) : dense_factor_.compute(assemble());
     return dense_factor_.matrixLU().diagonal().array().isFinite().all() &&
            (dense_factor_.matrixLU().diagonal().array() != 0).all();
   }
+  const Matrix& matrix = assemble();
   if (!has_order_) sparse_factor_.analyzePattern(matrix);
   has_order_ = true;
   sparse_factor_.factorize(matrix);
@@ -96,7 +113,8 @@ bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
 
 bool NewtonSystem::factorize_symmetric(const std::vector<MapDerivative>& derivatives) {
   if (is_local_) return factorize(derivatives);
-  const Matrix& matrix = assemble(derivatives);
+  keep(derivatives);
+  const Matrix& matrix = assemble();
   factor_ = Factor::symmetric;
   if (!has_symmetric_order_) symmetric_factor_.analyzePattern(matrix);
   has_symmetric_order_ = true;

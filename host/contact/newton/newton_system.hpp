@@ -44,13 +44,16 @@ class NewtonSystem {
  private:
   enum class Factor { dense, general, symmetric };
 
-  const Eigen::SparseMatrix<double>& assemble(const std::vector<MapDerivative>& derivatives);
+  void keep(const std::vector<MapDerivative>& derivatives);
+  Eigen::MatrixXd dense_sum() const;
+  const Eigen::SparseMatrix<double>& assemble();
   Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side);
   Eigen::VectorXd solve_factorized(const Eigen::VectorXd& right_side);
 
   const Delassus& delassus_;
   bool is_local_;
   Eigen::SparseMatrix<double> delassus_matrix_;   ///< W, local form
+  Eigen::MatrixXd dense_delassus_;                ///< W of few contacts, local form
   Eigen::SparseMatrix<double> local_sum_;         ///< E + F W, local form
   Eigen::SparseMatrix<double> jacobian_;          ///< J, global form
   ContactAssembly assembly_;                      ///< global form

@@ -74,13 +74,9 @@ bool needs_blocks(const ContactProblem& problem) {
 
 BlockProblem::BlockProblem(const ContactProblem& given, const ContactOptions& options)
     : given_(given), blocks_(given) {
-  const bool refuses_rolling =
-      options.method == ContactMethod::newton || options.method == ContactMethod::mass_splitting;
-  if (!given.rolling.empty() && refuses_rolling) {
-    throw ContactProblemError(
-        "rolling", std::string(": method ") +
-                       (options.method == ContactMethod::newton ? "newton" : "mass-splitting") +
-                       " has no rolling friction; choose automatic");
+  if (!given.rolling.empty() && options.method == ContactMethod::newton) {
+    throw ContactProblemError("rolling",
+                              ": method newton has no rolling friction; choose automatic");
   }
   blocks_.second_friction.clear();
   blocks_.bilateral = {};

@@ -91,8 +91,7 @@ CoupledIslands::Route CoupledIslands::planned_route(const ContactIsland& island)
   constexpr std::int64_t max_contacts = 2000;  // 290 MB for the Delassus matrix
   constexpr std::int64_t max_iterations = 1000;
   const std::int64_t budget = iteration_budget(options_, island);
-  if (options_.method == ContactMethod::mass_splitting ||
-      options_.method == ContactMethod::newton ||
+  if (options_.method == ContactMethod::newton ||
       options_.expert.coupling == ContactCoupling::condensed) {
     return {0, true};
   }

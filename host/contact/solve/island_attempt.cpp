@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/contact/newton/newton_system.hpp"
+#include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/solve/method_choice.hpp"
 #include "host/contact/structure/extract.hpp"
 #include "host/contact/sweeps/method_names.hpp"
@@ -19,6 +20,7 @@ const ContactProblem& IslandAttempt::part() {
 }
 
 void IslandAttempt::polish(const NewtonLimits& limits) {
+  if (has_rolling(part())) return;
   ContactOptions options = all_.options;
   options.tolerance /= 2;  // relative to this island, not to the whole problem
   double* const current = impulse();
@@ -40,7 +42,8 @@ double IslandAttempt::sweeps_per_newton_step() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double memory = all_.budget != nullptr ? all_.budget->memory_limit() : infinity;
   const NewtonCost cost = newton_cost(part(), memory);
-  if (cost.bytes > memory || all_.options.max_newton == 0) return infinity;
+  const bool is_left_out = all_.options.max_newton == 0 || has_rolling(part());
+  if (is_left_out || cost.bytes > memory) return infinity;
   return tetwarp::sweeps_per_newton_step(cost, part().contact_count());
 }
 

@@ -55,8 +55,9 @@ class IslandAttempt {
   bool is_done() const { return run_.is_done(index_, outcome_.sums); }
 
   /// Newton's method from the current impulses; keeps its impulses unless their error is larger.
+  /// Does nothing where there is rolling friction, which it does not have.
   void polish(const NewtonLimits& limits);
-  /// Sweeps that take as long as a step of Newton's method; infinity where it may not be used.
+  /// Sweeps that take as long as a step of Newton's method; infinity where it is not used.
   double sweeps_per_newton_step();
 
  private:

@@ -11,22 +11,22 @@
 #include "host/contact/solve/best_impulses.hpp"
 #include "host/contact/solve/certificate.hpp"
 #include "host/contact/solve/island_restart.hpp"
-#include "host/contact/solve/method_choice.hpp"
 
 namespace tetwarp {
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t search_sweeps = 4096;  ///< of a search for contradictions, at most
-/// Newton steps that an island is expected to take, and those that the phases of a trial share out.
-/// Stacks and jams take some ten, packings with friction hundreds.
+/// A series of Newton steps between sweeps.
 struct NewtonTrial {
-  std::int64_t expected;
-  std::int64_t shared;
+  double expected;  ///< steps by which sweeps count its cost
+  NewtonLimits limits;
 };
-constexpr NewtonTrial newton_trials[] = {{40, 60}, {200, 400}};
-/// A trial takes at most as long as the sweeps before it, so that sweeps which would have converged
-/// without it take at most twice as long; but it may take this many steps in any case.
-constexpr std::int64_t short_trial = 40;
+constexpr NewtonTrial newton_trials[] = {
+    {12, {.shared = 160, .total = 40, .phases = NewtonPhases::near}},
+    {60, {.shared = 60, .total = 40, .phases = NewtonPhases::far}}};
+/// Sweeps that the first trial takes as long as at least. As long as more sweeps promise to be
+/// cheaper, neither contradictions nor the cost of a factorization are looked for.
+constexpr double least_trial = 240;
 
 /// The contacts of an island that a direction of impulses pushes.
 std::vector<std::int32_t> contacts_of(const ImpulseDirection& direction,
@@ -46,7 +46,7 @@ std::vector<std::int32_t> contacts_of(const ImpulseDirection& direction,
 bool IslandFallback::searches_before_sweeps() {
   constexpr double factorizations = 60;
   constexpr std::int64_t few = 4096;
-  if (attempt_.options().max_newton == 0) return false;
+  if (attempt_.options().max_newton == 0 || has_other_blocks()) return false;
   const double step = attempt_.sweeps_per_newton_step();
   const std::int64_t left =
       std::max(attempt_.options().max_sweeps - attempt_.outcome().sweeps, few);
@@ -65,16 +65,16 @@ bool IslandFallback::has_other_blocks() const {
 
 void IslandFallback::run() {
   const std::int64_t most = std::min(attempt_.options().max_sweeps, search_sweeps);
-  const std::int64_t few = std::max<std::int64_t>(attempt_.outcome().sweeps, 64);
+  constexpr std::int64_t few = 64;
   if (attempt_.is_over()) return;
-  if (has_other_blocks()) return continue_with_rows();
   if (!has_newton()) {
     const bool allows_many = attempt_.options().max_sweeps >= search_sweeps;
     if (!clamp_contradicting({most, false}) && allows_many) certify_after_sweeps();
     return;
   }
-  if (clamp_contradicting({std::min(most, few), true})) return;
-  is_automatic() ? alternate() : attempt_.polish({});
+  if (is_automatic()) sweep_while_cheaper(least_trial);
+  if (attempt_.is_done() || clamp_contradicting({std::min(most, few), true})) return;
+  is_automatic() ? take_turns() : attempt_.polish({});
   if (attempt_.is_done() || clamp_contradicting({most, false}) || find_contradiction()) return;
   if (is_automatic()) {
     finish_automatic();
@@ -89,16 +89,12 @@ void IslandFallback::certify_after_sweeps() {
 }
 
 /// Sweeps and Newton's method in turns.
-void IslandFallback::alternate() {
-  const double step = attempt_.sweeps_per_newton_step();
+void IslandFallback::take_turns() {
+  const double worth = newton_worth(attempt_.sweeps_per_newton_step());
   for (const NewtonTrial& trial : newton_trials) {
-    const std::int64_t steps =
-        std::min(trial.expected, max_newton_steps(attempt_.part().contact_count()));
-    sweep_while_cheaper(static_cast<double>(steps) * step);
+    sweep_while_cheaper(trial.expected * worth);
     if (attempt_.is_done()) return;
-    const auto affordable =
-        static_cast<std::int64_t>(static_cast<double>(attempt_.outcome().sweeps) / step);
-    attempt_.polish({trial.shared, std::max(short_trial, affordable)});
+    attempt_.polish(trial.limits);
     if (attempt_.is_done()) return;
   }
 }
@@ -119,19 +115,6 @@ void IslandFallback::finish_automatic() {
   if (!is_searched && !attempt_.is_done()) find_unbounded();
 }
 
-/// For an island with bilateral or rolling blocks: no certificates, and no Newton's method where
-/// there is rolling friction, which it does not have.
-void IslandFallback::continue_with_rows() {
-  const bool polishes = has_newton() && !has_rolling(attempt_.problem());
-  const NewtonLimits first_limits =
-      is_automatic() ? NewtonLimits{.shared = newton_trials[1].shared} : NewtonLimits{};
-  if (polishes) attempt_.polish(first_limits);
-  if (!is_automatic() || attempt_.is_done()) return;
-  attempt_.run().sweep_on(attempt_.index(), attempt_.options().max_sweeps);
-  attempt_.measure();
-  if (polishes && !attempt_.is_done()) attempt_.polish({});
-}
-
 /// Continues with sweeps until Newton's method promises to be cheaper; see method_choice.hpp.
 /// Leaves the best impulses. The next sweeps continue from the last ones: near impulses of a small
 /// residual that are no solution the residual first grows, and sweeps from the best ones would
@@ -143,18 +126,19 @@ void IslandFallback::sweep_while_cheaper(double newton_sweeps) {
   double* const impulse = attempt_.impulse();
   BestImpulses best(impulse, attempt_.size(), attempt_.excess());
   std::copy(last_.begin(), last_.end(), impulse);
-  while (outcome.sweeps < attempt_.options().max_sweeps && !attempt_.is_over()) {
+  while (outcome.sweeps < attempt_.options().max_sweeps && !attempt_.is_over() &&
+         !prefers_newton(newton_sweeps, outcome.sweeps, left_)) {
     const double before = best.excess();
     const std::int64_t from = outcome.sweeps;
-    const double least =
-        run.sweep_past_best(attempt_.index(), from + std::max<std::int64_t>(64, from / 2));
+    const double least = run.sweep_past_best(
+        attempt_.index(), from + std::max<std::int64_t>(64, from / 2), sweeps_.current());
     attempt_.measure();
     if (attempt_.is_done()) return;
     best.keep(run.best_impulse(attempt_.index()), least);
     const std::int64_t sweeps = outcome.sweeps - from;
     if (sweeps == 0) break;  // numbers are not finite
-    const double left = sweeps_left(before, best.excess(), sweeps);
-    if (prefers_newton(newton_sweeps, outcome.sweeps, left)) break;
+    left_ = sweeps_left(before, best.excess(), sweeps);
+    sweeps_.note(outcome.sweeps, left_);
   }
   last_.assign(impulse, impulse + attempt_.size());
   best.restore();
@@ -174,6 +158,7 @@ bool IslandFallback::clamp_contradicting(const ContradictionSearch& search) {
 /// Searches for a certificate that normal offsets contradict each other. Sweeps, which come first,
 /// need about the square of the number of bodies in a chain to show it.
 bool IslandFallback::find_contradiction() {
+  if (has_other_blocks()) return false;
   const std::optional<ImpulseDirection> found = find_direction(
       attempt_.part(), attempt_.options(), DirectionCone::normals, attempt_.budget());
   if (!found) return false;
@@ -183,6 +168,7 @@ bool IslandFallback::find_contradiction() {
 }
 
 bool IslandFallback::find_unbounded() {
+  if (has_other_blocks()) return false;
   const std::optional<ImpulseDirection> found = find_direction(
       attempt_.part(), attempt_.options(), DirectionCone::friction, attempt_.budget());
   if (!found) return false;

@@ -7,20 +7,23 @@
 #include "host/contact/solve/engine_result.hpp"
 #include "host/contact/solve/feasibility.hpp"
 #include "host/contact/solve/island_attempt.hpp"
+#include "host/contact/solve/method_choice.hpp"
 
 namespace tetwarp {
 
 /// With the method `automatic`, in this order until the island is solved or its contacts are shown
 /// to contradict each other:
 ///
-/// 1. Sweeps show contradictions of normal offsets, as far as they do so soon.
+/// 1. Sweeps, as long as they promise to end soon; then contradictions of normal offsets, as far as
+///    sweeps show them soon.
 /// 2. Sweeps and Newton's method in turns, each as long as it promises to be the cheaper one.
 /// 3. Contradictions, by more sweeps and by a certificate.
 /// 4. A direction in which impulses can grow without bound; if there is one, other starts.
 /// 5. All sweeps that are left, then Newton's method as long as it improves the impulses.
 ///
 /// The method `newton` does 1, Newton's method, 3 and 4, without other starts. Methods of sweeps do
-/// 3 and 4, without other starts; the certificates only where many sweeps are allowed.
+/// 3 and 4, without other starts; the certificates only where many sweeps are allowed. Islands with
+/// bilateral or rolling blocks have no certificates, those with rolling blocks no Newton's method.
 class IslandFallback {
  public:
   /// @param attempt  kept by the caller
@@ -40,9 +43,8 @@ class IslandFallback {
   bool searches_before_sweeps();
   bool has_other_blocks() const;
 
-  void continue_with_rows();
   void certify_after_sweeps();
-  void alternate();
+  void take_turns();
   void finish_automatic();
   void sweep_while_cheaper(double newton_sweeps);
   bool clamp_contradicting(const ContradictionSearch& search);
@@ -52,6 +54,8 @@ class IslandFallback {
   IslandAttempt& attempt_;
   ContradictionMemory& memory_;
   EngineResult& result_;
+  SweepChoice sweeps_;
+  double left_ = 0;           ///< of sweeps_left(), of the last sweeps
   std::vector<double> last_;  ///< impulses from which sweep_while_cheaper() goes on; empty: current
 };
 

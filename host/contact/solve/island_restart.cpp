@@ -63,16 +63,6 @@ bool IslandRestart::is_finished() {
   return attempt_.is_done() || attempt_.is_over();
 }
 
-void IslandRestart::sweep_from_zero() {
-  const IslandOutcome& outcome = attempt_.outcome();
-  const std::int64_t share = (attempt_.options().max_sweeps - outcome.sweeps) / 4;
-  for (const ContactMethod method : {ContactMethod::mass_splitting, ContactMethod::anderson}) {
-    std::fill_n(attempt_.impulse(), attempt_.size(), 0.0);
-    attempt_.run().sweep_on(attempt_.index(), outcome.sweeps + share, method);
-    if (is_finished()) return;
-  }
-}
-
 /// Newton's method from random impulses, scaled by those that single contacts need.
 void IslandRestart::polish_random_starts() {
   const ContactSystem<double>& system = attempt_.run().system();
@@ -92,7 +82,6 @@ void IslandRestart::polish_random_starts() {
 
 void IslandRestart::run() {
   if (pivot()) return;
-  sweep_from_zero();
   polish_random_starts();
   best_.restore();
   attempt_.measure();

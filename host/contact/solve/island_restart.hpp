@@ -16,14 +16,13 @@ class IslandRestart {
   explicit IslandRestart(IslandAttempt& attempt)
       : attempt_(attempt), best_(attempt.impulse(), attempt.size(), attempt.excess()) {}
 
-  /// Pivoting, mass splitting and Anderson's method from zero impulses, then Newton's method from
-  /// random ones, until one of them solves the island. Leaves the best impulses.
+  /// Pivoting, then Newton's method from random impulses, until one of them solves the island.
+  /// Leaves the best impulses.
   void run();
 
  private:
   bool pivot();
   bool is_finished();
-  void sweep_from_zero();
   void polish_random_starts();
 
   IslandAttempt& attempt_;

@@ -22,10 +22,24 @@ double sweeps_left(double before, double after, std::int64_t sweeps) {
   return static_cast<double>(sweeps) * std::log(2 * after) / std::log(before / after);
 }
 
+double newton_worth(double sweeps_per_step) {
+  constexpr double usual = 30;
+  const double fill = std::max(sweeps_per_step / usual, 1.0);
+  return sweeps_per_step * fill * fill;
+}
+
 bool prefers_newton(double worth, std::int64_t spent, double left) {
-  if (static_cast<double>(spent) > worth) return true;
-  if (left <= worth) return false;
-  return 1.5 * static_cast<double>(spent) * std::min(left, 2 * worth) > worth * worth;
+  const auto so_far = static_cast<double>(spent);
+  return left > worth && worth <= 0.4 * (so_far + std::min(left, 10 * so_far));
+}
+
+void SweepChoice::note(std::int64_t spent, double left) {
+  slow_ = left > 8 * static_cast<double>(spent) ? slow_ + 1 : 0;
+  if (slow_ < 3 || left < other_left_) return;
+  slow_ = 0;
+  other_left_ = left;
+  current_ =
+      current_ == ContactMethod::anderson ? ContactMethod::nonlinear_cg : ContactMethod::anderson;
 }
 
 }  // namespace tetwarp

@@ -4,6 +4,8 @@
 #pragma once
 #include <cstdint>
 
+#include <tetwarp/choices.hpp>
+
 #include "host/contact/newton/newton_system.hpp"
 
 namespace tetwarp {
@@ -18,11 +20,34 @@ double sweeps_per_newton_step(const NewtonCost& cost, std::int64_t contacts);
 /// @param after   the same after them, > 1
 double sweeps_left(double before, double after, std::int64_t sweeps);
 
-/// Whether to leave sweeps for a series of Newton steps that cost as much as `worth` sweeps. The
-/// slower the sweeps converge, the earlier: after a third of that cost at the earliest, at the
-/// latest after all of it, and in between not while they promise to converge sooner.
+/// By how many sweeps a Newton step counts where the choice is between both. Where a factorization
+/// fills more than that of a chain of bodies, contacts hold each other in more than one direction:
+/// such packings take the more steps, hundreds with friction, the more it fills.
+/// @param sweeps_per_step  of sweeps_per_newton_step()
+double newton_worth(double sweeps_per_step);
+
+/// Whether to leave sweeps for a series of Newton steps that cost as much as `worth` sweeps: the
+/// sweeps that are left would cost more, and the series, should it fail, at most two fifths of all
+/// sweeps. No more are counted as left than ten times those spent.
 /// @param spent  sweeps so far
 /// @param left   of sweeps_left()
 bool prefers_newton(double worth, std::int64_t spent, double left);
+
+/// Which accelerated sweeps continue an island: conjugate directions or Anderson's method.
+class SweepChoice {
+ public:
+  ContactMethod current() const { return current_; }
+
+  /// Chooses the next sweeps: the other ones after the present ones have been slow three times in a
+  /// row, unless the other ones were slower when they last ran.
+  /// @param spent  sweeps so far
+  /// @param left   of sweeps_left(), by the present ones
+  void note(std::int64_t spent, double left);
+
+ private:
+  ContactMethod current_ = ContactMethod::nonlinear_cg;
+  int slow_ = 0;           ///< slow sweeps in a row
+  double other_left_ = 0;  ///< of the other ones, when they last ran
+};
 
 }  // namespace tetwarp

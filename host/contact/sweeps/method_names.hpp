@@ -17,8 +17,6 @@ constexpr const char* report_name_of(ContactMethod method) {
       return "nonlinear_cg";
     case ContactMethod::anderson:
       return "anderson";
-    case ContactMethod::mass_splitting:
-      return "mass_splitting";
     case ContactMethod::newton:
       return "newton";
   }

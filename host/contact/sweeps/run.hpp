@@ -130,18 +130,11 @@ class ContactRun {
     });
   }
 
-  /// Continues one island, with nonlinear conjugate gradients if no method is given, until it
-  /// converges or has had `sweep_end` sweeps in all; options.max_sweeps at most.
-  void sweep_on(std::int64_t i,
-                std::int64_t sweep_end,
-                ContactMethod method = ContactMethod::nonlinear_cg) {
-    go_on(i, threads_of(i), method, std::min(sweep_end, options_.max_sweeps));
-  }
-  /// The same, but leaves the last impulses; best_impulse() has the best.
+  /// Continues one island by a method of sweeps until it converges or has had `sweep_end` sweeps in
+  /// all; options.max_sweeps at most. Leaves the last impulses; best_impulse() has the best.
   /// @return  error over allowed error of the best impulses
-  double sweep_past_best(std::int64_t i, std::int64_t sweep_end) {
-    return go_on(i, threads_of(i), ContactMethod::nonlinear_cg,
-                 std::min(sweep_end, options_.max_sweeps), false);
+  double sweep_past_best(std::int64_t i, std::int64_t sweep_end, ContactMethod method) {
+    return go_on(i, threads_of(i), method, std::min(sweep_end, options_.max_sweeps), false);
   }
   /// [3 slots of the island], of the last sweeps of the island
   const T* best_impulse(std::int64_t i) const { return work_.best.data + 3 * island(i).slot_begin; }

@@ -66,12 +66,11 @@ enum class Quantity {
 /// How contacts are solved. Use `automatic`; the others are for comparing solvers: each runs one
 /// method to the end, even if it converges slowly or not at all.
 enum class ContactMethod {
-  automatic,       ///< Anderson-accelerated sweeps; other methods when the residual stagnates
-  gauss_seidel,    ///< expert: projected Gauss-Seidel, color by color
-  nonlinear_cg,    ///< expert: nonsmooth nonlinear conjugate gradients over sweeps
-  anderson,        ///< expert: Anderson acceleration of sweeps, window 8
-  mass_splitting,  ///< expert: split masses, no colors; Nesterov acceleration with restart
-  newton           ///< expert: sweeps, then semismooth Newton on the natural map (host, per island)
+  automatic,     ///< Anderson-accelerated sweeps; other methods when the residual stagnates
+  gauss_seidel,  ///< expert: projected Gauss-Seidel, color by color
+  nonlinear_cg,  ///< expert: nonsmooth nonlinear conjugate gradients over sweeps
+  anderson,      ///< expert: Anderson acceleration of sweeps, window 8
+  newton         ///< expert: sweeps, then semismooth Newton on the natural map (host, per island)
 };
 
 /// The residual that ContactOptions::tolerance bounds. Both are relative numbers without unit.
