@@ -195,6 +195,31 @@ TEST(TwoLevelContact, StartsFromTheChangeOfTheStepBefore) {
   EXPECT_LT(started_count, fresh_count);
 }
 
+/// Passes of a part of a step solve for more and more contacts: impulses found so far stay.
+TEST(TwoLevelContact, StartsFromTheImpulsesOfTheSolveBefore) {
+  const HandScene scene = stack_scene(1e6);
+  const auto stepper = make_cpu_stepper(scene.model, {.linear_tolerance = 1e-10});
+  ContactSystem system(scene.surfaces, scene.model, {});
+  ContactTracker tracker;
+  stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+  std::vector<Point3> free, change;
+  stepper->get_velocities(free);
+  const auto solve = [&] {
+    const auto contacts = scene.begin(tracker, scene.model.start, stack_step);
+    std::vector<Point3> velocity = free;
+    return system.solve(*stepper, scene.model.start, tracker, contacts, velocity, &change);
+  };
+
+  const ContactSolveOutcome first = solve(), again = solve();
+  system.begin_part();
+  change.clear();
+  const ContactSolveOutcome fresh = solve();
+
+  EXPECT_GT(first.outer_iterations, 1);
+  EXPECT_EQ(again.outer_iterations, 0);
+  EXPECT_EQ(fresh.outer_iterations, first.outer_iterations);
+}
+
 TEST(TwoLevelContact, TakesFewerOuterIterationsThanBlockJacobi) {
   const HandScene scene = stack_scene(1e6);
   ContactSystemOptions options;
