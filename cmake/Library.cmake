@@ -90,8 +90,8 @@ tetwarp_sources(tetwarp host/simulate/step
   cell_fields.cpp scene_drive.cpp scene_loads.cpp scene_record.cpp step_sums.cpp system_pattern.cpp
   ALONE reference_rows.cpp reference_stepper.cpp)
 tetwarp_sources(tetwarp host/simulate/step/cpu
-  rest_factor.cpp rest_factors.cpp rest_gradients.cpp rest_matrix.cpp stepper_cpu.cpp
-  vector_stages.cpp ALONE vector_stages_base.cpp)
+  block_lu.cpp island_factors.cpp rest_factor.cpp rest_factors.cpp rest_gradients.cpp rest_matrix.cpp
+  stepper_cpu.cpp vector_stages.cpp ALONE vector_stages_base.cpp)
 tetwarp_sources(tetwarp host/simulate/step/cuda
   stepper_${tetwarp_cuda})
 tetwarp_sources(tetwarp host/simulate/surfaces

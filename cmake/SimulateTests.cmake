@@ -22,6 +22,8 @@ if(NOT BUILD_SHARED_LIBS)
   set(tetwarp_body_tests        # kernels of bodies, emulated cuda
     tests/simulate/body_measures.cpp
     tests/simulate/body_models.cpp
+    tests/simulate/step/test_block_lu.cpp
+    tests/simulate/step/test_island_factors.cpp
     tests/simulate/step/test_tet_rotation.cpp
     tests/simulate/step/test_elastic_forces.cpp
     tests/simulate/step/test_edge_spring.cpp
