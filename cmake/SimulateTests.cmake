@@ -108,6 +108,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/solve/test_two_level.cpp
     tests/simulate/solve/test_touch_lists.cpp
     tests/simulate/solve/test_two_level_stages.cpp
+    tests/simulate/solve/test_contact_tangent.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
     tests/simulate/body_models.cpp
