@@ -53,6 +53,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/collide/cubic_ccd.cpp
     tests/collide/test_ccd_mutants.cpp
     tests/collide/test_ccd_turns.cpp
+    tests/collide/test_pair_apart.cpp
     tests/collide/test_pair_ccd.cpp
     tests/collide/test_interval_ccd.cpp
     tests/collide/test_pair_distance.cpp
