@@ -22,6 +22,8 @@ if(NOT BUILD_SHARED_LIBS)
   set(tetwarp_body_tests        # kernels of bodies, emulated cuda
     tests/simulate/body_measures.cpp
     tests/simulate/body_models.cpp
+    tests/simulate/step/test_block_lu.cpp
+    tests/simulate/step/test_island_factors.cpp
     tests/simulate/step/test_tet_rotation.cpp
     tests/simulate/step/test_elastic_forces.cpp
     tests/simulate/step/test_edge_spring.cpp
@@ -51,6 +53,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/collide/cubic_ccd.cpp
     tests/collide/test_ccd_mutants.cpp
     tests/collide/test_ccd_turns.cpp
+    tests/collide/test_pair_apart.cpp
     tests/collide/test_pair_ccd.cpp
     tests/collide/test_interval_ccd.cpp
     tests/collide/test_pair_distance.cpp
@@ -106,6 +109,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/solve/test_two_level.cpp
     tests/simulate/solve/test_touch_lists.cpp
     tests/simulate/solve/test_two_level_stages.cpp
+    tests/simulate/solve/test_contact_tangent.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
     tests/simulate/body_models.cpp

@@ -13,7 +13,9 @@ struct ItemPair {
   std::int32_t a, b;
 };
 
-/// One index = one entry. Appends its pairs with the entries after it in the same cell.
+/// One index = one entry. Appends its pairs with the entries after it in the same cell, and with
+/// those before it that are of items smaller than those of the grid. Such items do not look for
+/// pairs in this cell: a large item may have thousands of them around it.
 ///
 /// Two items share several cells. Their pair is kept in the cell that holds the lowest corner of
 /// the intersection of their boxes, in the grid of the larger item: each pair once.
@@ -27,39 +29,61 @@ struct EntryPairsOp {
   template <class Emit>
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
     const KeyValue entry = entries[i];
-    if (is_repeated(i)) return;
+    if (flag_of(entry) || is_repeated(i)) return;
     const std::int64_t cell = key_of(entry);
-    const std::int32_t a = value_of(entry);
-    const std::int32_t body = scene.items[a].body;
-    std::int64_t j = i + 1;
-    if (scene.bodies[body].touches_itself == 0)
-      j = end_of_body(i, cell, scene.bodies[body].item_end);
-    if (j >= entries.size || key_of(entries[j]) != cell) return;
-    const Box box = boxes[a];
-    std::int32_t body_end = 0;  // first item after those of the body that was tested last
-    bool is_allowed = false;
-    std::int64_t tests = 0;
-    for (; j < entries.size && key_of(entries[j]) == cell; ++j) {
-      const KeyValue other = entries[j];
-      const std::int32_t b = value_of(other);
-      if (b >= body_end) {
-        const std::int32_t other_body = scene.items[b].body;
-        body_end = scene.bodies[other_body].item_end;
-        is_allowed = scene.may_touch(body, other_body);
-      }
-      // A pair of two items that are smaller than those of this grid is found in a finer grid.
-      if (!is_allowed || a == b || (flag_of(entry) && flag_of(other))) continue;
-      ++tests;
-      const Box& second = boxes[b];
-      if (!overlap(box, second) || is_repeated(j) || !is_lowest_cell(cell, a, b, box, second)) {
-        continue;
-      }
-      emit(ItemPair{a, b});
+    const std::int32_t body = scene.items[value_of(entry)].body;
+    std::int64_t after = i + 1;
+    if (scene.bodies[body].touches_itself == 0) {
+      after = end_of_body(i, cell, scene.bodies[body].item_end);
+    }
+    std::int64_t tests = compare(i, after, entries.size, false, emit);
+    if (plan->level_of_size[sizes[value_of(entry)]] > 0) {
+      tests += compare(i, begin_of_cell(i, cell), i, true, emit);
     }
     emit.tally(tests);
   }
 
  private:
+  /// Compares entry i with entries [begin, end) of the same cell. @returns the tests
+  /// @param smaller  only with those of items smaller than those of the grid
+  template <class Emit>
+  TETWARP_HD std::int64_t compare(
+      std::int64_t i, std::int64_t begin, std::int64_t end, bool smaller, Emit& emit) const {
+    const std::int64_t cell = key_of(entries[i]);
+    const std::int32_t a = value_of(entries[i]), body = scene.items[a].body;
+    const Box box = boxes[a];
+    std::int32_t body_end = 0;  // first item after those of the body that was tested last
+    bool is_allowed = false;
+    std::int64_t tests = 0;
+    for (std::int64_t j = begin; j < end && key_of(entries[j]) == cell; ++j) {
+      const KeyValue other = entries[j];
+      if (smaller && !flag_of(other)) continue;
+      const std::int32_t b = value_of(other);
+      if (b >= body_end) {
+        const std::int32_t other_body = scene.items[b].body;
+        body_end = scene.bodies[other_body].item_end;
+        is_allowed = scene.may_touch(min_of(body, other_body), max_of(body, other_body));
+      }
+      if (!is_allowed || a == b) continue;
+      ++tests;
+      const Box& second = boxes[b];
+      if (!overlap(box, second) || is_repeated(j) || !is_lowest_cell(cell, a, b, box, second)) {
+        continue;
+      }
+      emit(ItemPair{min_of(a, b), max_of(a, b)});
+    }
+    return tests;
+  }
+  /// The first entry of the cell.
+  TETWARP_HD std::int64_t begin_of_cell(std::int64_t i, std::int64_t cell) const {
+    const auto is_own = [&](std::int64_t k) { return k >= 0 && key_of(entries[k]) == cell; };
+    std::int64_t low = i, step = 1;
+    while (is_own(low - step)) low -= step, step *= 2;
+    for (; step > 1; step /= 2) {
+      if (is_own(low - step / 2)) low -= step / 2;
+    }
+    return low;
+  }
   /// Whether the entry before this one is of the same item and has the same cell number.
   TETWARP_HD bool is_repeated(std::int64_t i) const {
     return i > 0 && ((entries[i] ^ entries[i - 1]) & ~KeyValue{flag_bit}) == 0;

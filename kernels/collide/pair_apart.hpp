@@ -43,8 +43,8 @@ TETWARP_HD bool bounds_apart(const MovingBounds& a, const MovingBounds& b, doubl
 struct ItemPoints {
   double place[2][3][3];  ///< [start, end][corner]
   std::int32_t count;
-  double extra;  ///< largest radius plus sagitta of the corners
-  MovingBounds bounds;
+  double extra;         ///< largest radius plus sagitta of the corners
+  MovingBounds bounds;  ///< set by find_bounds()
 
   TETWARP_HD ItemPoints(const CollideItem& item,
                         const MotionView& motion,
@@ -59,6 +59,8 @@ struct ItemPoints {
         place[1][k][i] = motion.end[3 * v + i] - origin[i];
       }
     }
+  }
+  TETWARP_HD void find_bounds() {
     for (int t = 0; t < 2; ++t) {
       bounds.set(t, place[t][0]);
       for (int k = 1; k < 3; ++k) bounds.add(t, place[t][k]);
@@ -82,8 +84,8 @@ struct ItemPoints {
   TETWARP_HD double size() const {
     double size = 0;
     for (int t = 0; t < 2; ++t) {
-      for (int i = 0; i < 3; ++i) {
-        size = max_of(size, max_of(-bounds.low[t][i], bounds.high[t][i]));
+      for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 3; ++i) size = max_of(size, fabs(place[t][k][i]));
       }
     }
     return size;
@@ -138,6 +140,59 @@ struct FaceSides {
   /// Whether all corners stay on one side.
   TETWARP_HD bool all() const { return side[0] != 0 && side[1] == side[0] && side[2] == side[0]; }
 };
+
+/// Bounds of the corners of an item along an axis, at start and end.
+struct AxisBounds {
+  double low[2], high[2];
+
+  TETWARP_HD AxisBounds(const ItemPoints& points, const double* axis) {
+    for (int t = 0; t < 2; ++t) {
+      low[t] = high[t] = dot3(axis, points.place[t][0]);
+      for (int k = 1; k < 3; ++k) {
+        const double height = dot3(axis, points.place[t][k]);
+        low[t] = min_of(low[t], height);
+        high[t] = max_of(high[t], height);
+      }
+    }
+  }
+};
+
+/// Whether two items stay apart along the line between their middles at the start.
+TETWARP_HD bool middles_apart(const ItemPoints& a, const ItemPoints& b, double distance) {
+  double axis[3];
+  for (int i = 0; i < 3; ++i) {
+    const double first = a.place[0][0][i] + a.place[0][1][i] + a.place[0][2][i];
+    axis[i] = b.place[0][0][i] + b.place[0][1][i] + b.place[0][2][i] - first;
+  }
+  const AxisBounds below(a, axis), above(b, axis);
+  const double separation = min_of(above.low[0] - below.high[0], above.low[1] - below.high[1]);
+  return is_apart(separation, dot3(axis, axis), distance);
+}
+
+/// Whether all features of two triangles that share the corners k of a and l of b, but no other
+/// ones, stay apart if they do not have this corner: a plane through it lies between the triangles,
+/// and the other corners are farther than `distance` from the plane.
+TETWARP_HD bool fans_apart(
+    const ItemPoints& a, int k, const ItemPoints& b, int l, double distance) {
+  const int ends_a[2] = {(k + 1) % 3, (k + 2) % 3}, ends_b[2] = {(l + 1) % 3, (l + 2) % 3};
+  double axis[3];
+  for (int i = 0; i < 3; ++i) {
+    axis[i] = b.place[0][ends_b[0]][i] + b.place[0][ends_b[1]][i] - a.place[0][ends_a[0]][i] -
+              a.place[0][ends_a[1]][i];
+  }
+  const double squared = dot3(axis, axis);
+  double least = 0;
+  for (int t = 0; t < 2; ++t) {
+    const double middle = dot3(axis, a.place[t][k]);
+    for (int n = 0; n < 2; ++n) {
+      const double above = dot3(axis, b.place[t][ends_b[n]]) - middle;
+      const double below = middle - dot3(axis, a.place[t][ends_a[n]]);
+      const double own = min_of(above, below);
+      least = t == 0 && n == 0 ? own : min_of(least, own);
+    }
+  }
+  return is_apart(least, squared, distance);
+}
 
 /// Whether edges k of a and l of b stay apart along the normal to both at the start.
 TETWARP_HD bool edges_apart(

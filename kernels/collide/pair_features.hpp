@@ -41,9 +41,12 @@ struct PairFeaturesOp {
     const CollideItem& a = scene.items[pair.a];
     const CollideItem& b = scene.items[pair.b];
     const double* const origin = motion.start.data + 3 * std::int64_t{a.vertex[0]};
-    const ItemPoints points_a(a, motion, scene.vertex_radius, origin);
-    const ItemPoints points_b(b, motion, scene.vertex_radius, origin);
+    ItemPoints points_a(a, motion, scene.vertex_radius, origin);
+    ItemPoints points_b(b, motion, scene.vertex_radius, origin);
     const double apart = distance_apart(points_a, points_b, distance);
+    if (neighbors_apart(a, points_a, b, points_b, apart)) return;
+    points_a.find_bounds();
+    points_b.find_bounds();
     if (bounds_apart(points_a.bounds, points_b.bounds, apart)) return;
     if (b.face >= 0) {
       const FaceSides sides(points_b, points_a, apart);
@@ -63,6 +66,28 @@ struct PairFeaturesOp {
     if (a.count == 1 && b.count == 2) return sphere_to_axis(a.vertex[0], b, emit);
     if (a.count == 2 && b.count == 1) return sphere_to_axis(b.vertex[0], a, emit);
     if (a.count > 1 && b.count > 1) edges(a, points_a, b, points_b, apart, emit);
+  }
+
+  /// Whether all features that share no vertex stay apart, along one direction for items that share
+  /// none or one.
+  TETWARP_HD bool neighbors_apart(const CollideItem& a,
+                                  const ItemPoints& points_a,
+                                  const CollideItem& b,
+                                  const ItemPoints& points_b,
+                                  double apart) const {
+    if (a.body != b.body) return middles_apart(points_a, points_b, apart);
+    int shared = 0, of_a = 0, of_b = 0;
+    for (int k = 0; k < a.count; ++k) {
+      for (int l = 0; l < b.count; ++l) {
+        if (a.vertex[k] != b.vertex[l]) continue;
+        ++shared;
+        of_a = k;
+        of_b = l;
+      }
+    }
+    if (shared == 0) return middles_apart(points_a, points_b, apart);
+    return shared == 1 && a.count == 3 && b.count == 3 &&
+           fans_apart(points_a, of_a, points_b, of_b, apart);
   }
 
   template <class Emit>

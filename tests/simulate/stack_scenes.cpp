@@ -41,6 +41,29 @@ HandScene stack_scene(double youngs) {
   return scene;
 }
 
+HandScene sheet_scene(double stiffness) {
+  HandScene scene;
+  Model& model = scene.model;
+  model = empty_model();
+  add_sheet(model, 6, 0.005, stiffness, 0.01);
+  const std::int32_t box = add_rigid(model, 0.02, {1e-6, 1e-6, 1e-6}, {0.015, 0.015, 0.005});
+  const std::int32_t frame = add_frame(model, {0, 0, 0});
+  scene.make_surfaces(0.02);
+  const auto add_touch = [&](std::int32_t node, std::int32_t rigid, const Point3& center) {
+    const Point3& place = model.start.position[static_cast<std::size_t>(node)];
+    Touch touch;
+    touch.body_b = model.rigid.body[static_cast<std::size_t>(rigid)];
+    touch.point_a = on_nodes({node, -1, -1}, {1, 0, 0});
+    touch.point_b = on_rigid({place[0] - center[0], place[1] - center[1], place[2] - center[2]});
+    touch.normal = {0, 0, rigid == frame ? 1.0 : -1.0};
+    touch.area = 1e-5;
+    scene.touches.push_back(touch);
+  };
+  for (std::int32_t node = 0; node < 49; ++node) add_touch(node, frame, {0, 0, 0});
+  for (std::int32_t node = 8; node < 41; node += 4) add_touch(node, box, {0.015, 0.015, 0.005});
+  return scene;
+}
+
 HandScene tower_scene(double height, std::int32_t cells) {
   HandScene scene;
   Model& model = scene.model;

@@ -12,6 +12,10 @@ constexpr double stack_step = 8e-3;  // [s]
 /// A stiff elastic block on a frame and a rigid box on it, all touching at many points.
 HandScene stack_scene(double youngs);
 
+/// A stiff sheet of 7 x 7 nodes on a frame, all touching, and a rigid box on some of them.
+/// @param stiffness  of its edges [N/m]
+HandScene sheet_scene(double stiffness);
+
 /// Three elastic blocks on a frame. With 12 cells along each side there are groups of 169, 57 and
 /// 85 contacts of one body or of two.
 /// @param height  of the shape at the start, as a factor of that at rest

@@ -55,6 +55,7 @@ ContactPasses::ContactPasses(const PassParts& parts, const ContactStepOptions& o
 
 void ContactPasses::run(bool is_first, BodyStepper& stepper, ContactPart& part) {
   was_ended_ = has_pairs_ = false;
+  system_.begin_part();
   const bool is_expected = expect_contacts_of_last_step();
   for (std::size_t pass = 0; pass < parts_.motion.passes() && (pass == 0 || !is_late()); ++pass) {
     const bool was_free = parts_.motion.is_free();

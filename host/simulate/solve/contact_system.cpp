@@ -175,6 +175,10 @@ ContactSystem::ContactSystem(const SceneSurfaces& scene,
 
 ContactSystem::~ContactSystem() = default;
 
+void ContactSystem::begin_part() {
+  state_->laws.forget_impulses();
+}
+
 ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
                                          const ModelState& state,
                                          const ContactTracker& tracker,
@@ -205,6 +209,7 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   s.is_resident = (s.shares.soft.is_empty() || s.deformable_solver.resident() != nullptr) &&
                   (s.shares.other.is_empty() || s.general_solver.resident() != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
+  s.laws.keep_impulses(contacts, s.solution.impulse);
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.rows.prescribed_impulses(s.solution.impulse, s.impulses);
   // The tracker computes gaps from these velocities: they are without the limit of recovery.

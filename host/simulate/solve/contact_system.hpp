@@ -38,6 +38,10 @@ class ContactSystem {
                 const ContactSystemOptions& options);
   ~ContactSystem();
 
+  /// Begins a part of a step: the first solve starts from the impulses of the records, those that
+  /// follow start from the impulses of the one before.
+  void begin_part();
+
   /// Solves the coupling islands that have contacts, together with their contacts; the others keep
   /// their velocities.
   /// @param stepper   after its solve(); its system is copied to the host only if an island is

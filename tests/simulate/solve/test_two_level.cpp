@@ -23,9 +23,10 @@ struct StackStep {
 std::vector<StackStep> run_stack(const HandScene& scene,
                                  const ContactSystemOptions& options,
                                  double adhesion,
-                                 std::vector<Point3>* change) {
+                                 std::vector<Point3>* change,
+                                 double friction = 0.4) {
   ContactTrackerOptions tracking;
-  tracking.materials[0].friction = 0.4;
+  tracking.materials[0].friction = friction;
   tracking.materials[0].stiffness = adhesion;
   tracking.materials[0].initial_intensity = adhesion > 0 ? 0.5 : 0;
   tracking.touch_distance = 1e-9;
@@ -83,6 +84,29 @@ TEST(TwoLevelContact, ResidualIsWithinTheTolerance) {
           EXPECT_TRUE(step.outcome.converged);
           EXPECT_LE(step.outcome.residual, tolerance);
           EXPECT_LE(step.residual.eta, 1.5 * tolerance);
+        }
+      }
+    }
+  }
+}
+
+/// Newton's method needs no sweeps and a few steps, whatever the stiffness is. Adhesive springs are
+/// part of its equations.
+TEST(TwoLevelContact, SheetsWithoutFrictionAreSolvedByNewtonsMethod) {
+  for (const double stiffness : {1e3, 1e5, 1e7}) {
+    for (const double adhesion : {0.0, 4e7}) {
+      const HandScene scene = sheet_scene(stiffness);
+      for (const double tolerance : {1e-4, 1e-7}) {
+        SCOPED_TRACE(testing::Message() << stiffness << " " << adhesion << " " << tolerance);
+        ContactSystemOptions options;
+        options.recovery_fraction = 1e9;
+        options.solver.tolerance = tolerance;
+
+        for (const StackStep& step : run_stack(scene, options, adhesion, nullptr, 0)) {
+          EXPECT_TRUE(step.outcome.converged);
+          EXPECT_LE(step.residual.eta, 1.5 * tolerance);
+          EXPECT_EQ(step.outcome.sweeps, 0);
+          EXPECT_LE(step.outcome.outer_iterations, 15);
         }
       }
     }
@@ -193,6 +217,31 @@ TEST(TwoLevelContact, StartsFromTheChangeOfTheStepBefore) {
     }
   }
   EXPECT_LT(started_count, fresh_count);
+}
+
+/// Passes of a part of a step solve for more and more contacts: impulses found so far stay.
+TEST(TwoLevelContact, StartsFromTheImpulsesOfTheSolveBefore) {
+  const HandScene scene = stack_scene(1e6);
+  const auto stepper = make_cpu_stepper(scene.model, {.linear_tolerance = 1e-10});
+  ContactSystem system(scene.surfaces, scene.model, {});
+  ContactTracker tracker;
+  stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+  std::vector<Point3> free, change;
+  stepper->get_velocities(free);
+  const auto solve = [&] {
+    const auto contacts = scene.begin(tracker, scene.model.start, stack_step);
+    std::vector<Point3> velocity = free;
+    return system.solve(*stepper, scene.model.start, tracker, contacts, velocity, &change);
+  };
+
+  const ContactSolveOutcome first = solve(), again = solve();
+  system.begin_part();
+  change.clear();
+  const ContactSolveOutcome fresh = solve();
+
+  EXPECT_GT(first.outer_iterations, 1);
+  EXPECT_EQ(again.outer_iterations, 0);
+  EXPECT_EQ(fresh.outer_iterations, first.outer_iterations);
 }
 
 TEST(TwoLevelContact, TakesFewerOuterIterationsThanBlockJacobi) {

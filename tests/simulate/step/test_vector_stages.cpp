@@ -285,6 +285,34 @@ TEST(VectorStages, SubstitutionSolves) {
   }
 }
 
+TEST(VectorStages, ProductsOfBlocksHaveTheBitsOfSingleNumbers) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  const std::vector<std::int32_t> rows{4, 0, 7, 5}, slot{2, -1, -1, -1, 0, 3, -1, 1};
+  std::vector<double> blocks(12 * rows.size()), factor(12), start(12 * rows.size());
+  for (auto* values : {&blocks, &factor, &start}) {
+    for (double& own : *values) own = normal(random);
+  }
+  std::vector<double> expected = start;
+  for (std::size_t e = 0; e < rows.size(); ++e) {
+    const double* const b = blocks.data() + 12 * e;
+    double* const out = expected.data() + 12 * slot[static_cast<std::size_t>(rows[e])];
+    for (int c = 0; c < 3; ++c) {
+      for (int i = 0; i < 4; ++i) {
+        out[4 * c + i] -= b[i] * factor[static_cast<std::size_t>(c)] +
+                          b[4 + i] * factor[static_cast<std::size_t>(4 + c)] +
+                          b[8 + i] * factor[static_cast<std::size_t>(8 + c)];
+      }
+    }
+  }
+  for (const VectorStages* stages : usable_stages()) {
+    std::vector<double> out = start;
+    stages->subtract_products(blocks.data(), rows.data(), std::ssize(rows), slot.data(),
+                              factor.data(), out.data());
+    EXPECT_EQ(out, expected) << stages->name;
+  }
+}
+
 TEST(VectorStages, ProductsHaveTheBitsOfSingleRows) {
   expect_equal_products<double>();
   expect_equal_products<float>();

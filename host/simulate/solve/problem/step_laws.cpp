@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/base/index_of.hpp"
+#include "host/base/point3.hpp"
 
 namespace tetwarp {
 
@@ -25,11 +26,36 @@ void StepLaws::set_bond(const TrackedContact& contact, std::size_t c) {
   recovered_[c] = std::max(recovered_[c], way / laws_.adhesion.time_step);
 }
 
+void StepLaws::keep_impulses(const std::vector<TrackedContact>& contacts,
+                             const std::vector<double>& impulse) {
+  kept_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const auto& axes = contacts[c].axes;
+    Point3 sum = times(impulse[3 * c], axes[0]);
+    for (std::size_t k = 1; k < 3; ++k) sum = plus(sum, times(impulse[3 * c + k], axes[k]));
+    kept_.push_back({contacts[c].key, sum});
+  }
+}
+
+/// Both lists are sorted by key.
+void StepLaws::set_guess(const std::vector<TrackedContact>& contacts) {
+  auto kept = kept_.begin();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    while (kept != kept_.end() && kept->key < contacts[c].key) ++kept;
+    if (kept == kept_.end()) return;
+    if (contacts[c].key < kept->key) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      laws_.impulse_guess[3 * c + k] = dot(contacts[c].axes[k], kept->impulse);
+    }
+  }
+}
+
 void StepLaws::set(const ContactTracker& tracker,
                    const std::vector<TrackedContact>& contacts,
                    const StepRows& rows,
                    const std::vector<Point3>& velocity) {
   tracker.fill(laws_);
+  set_guess(contacts);
   const double time_step = laws_.adhesion.time_step;
   recovered_.assign(contacts.size(), 0);
   for (std::size_t c = 0; c < contacts.size(); ++c) {

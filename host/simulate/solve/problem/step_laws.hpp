@@ -26,6 +26,12 @@ class StepLaws {
            const std::vector<TrackedContact>& contacts,
            const StepRows& rows,
            const std::vector<Point3>& velocity);
+  /// Keeps the impulses of the contacts of the last set(): they are the guess for contacts with the
+  /// same keys in those that follow, until forget_impulses().
+  /// @param impulse  [3 contacts], along their axes
+  void keep_impulses(const std::vector<TrackedContact>& contacts,
+                     const std::vector<double>& impulse);
+  void forget_impulses() { kept_.clear(); }
 
   /// The laws as a problem without matrices.
   const ContactProblem& problem() const { return laws_; }
@@ -34,6 +40,12 @@ class StepLaws {
   const std::vector<double>& recovered() const { return recovered_; }
 
  private:
+  struct KeptImpulse {
+    ContactKey key;
+    Point3 impulse;  ///< [world]
+  };
+
+  void set_guess(const std::vector<TrackedContact>& contacts);
   void set_bond(const TrackedContact& contact, std::size_t c);
   double recovery_speed(const ContactKey& key) const;
 
@@ -41,6 +53,7 @@ class StepLaws {
   double recovery_fraction_;
   ContactProblem laws_;
   std::vector<double> recovered_;
+  std::vector<KeptImpulse> kept_;  ///< sorted by key
 };
 
 }  // namespace tetwarp

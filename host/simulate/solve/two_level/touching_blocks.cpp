@@ -244,6 +244,10 @@ void TouchingBlocks::add_push(std::size_t contact, const double* r, double* forc
   }
 }
 
+void TouchingBlocks::add_pushes(const double* impulse, double* force) const {
+  for (std::size_t c = 0; c < laws_.constants.size(); ++c) add_push(c, impulse + 3 * c, force);
+}
+
 void TouchingBlocks::set_changes(const double* before, const double* after, double* force) const {
   for (const std::int32_t row : touched_) std::fill_n(force + 3 * std::int64_t{row}, 3, 0.0);
   for (std::size_t c = 0; c < laws_.constants.size(); ++c) {

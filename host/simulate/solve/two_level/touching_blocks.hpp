@@ -86,6 +86,8 @@ class TouchingBlocks {
   void velocities_of_rows(const double* x, double* velocity) const;
   /// force = load + J^T r in the rows that contacts touch.
   void add_impulses(View<const double> load, const double* impulse, double* force) const;
+  /// force += J^T r.
+  void add_pushes(const double* impulse, double* force) const;
   /// force = J^T (after - before) in the rows that contacts touch.
   void set_changes(const double* before, const double* after, double* force) const;
   /// @param free     u without impulses

@@ -115,7 +115,7 @@ class TwoLevelControl {
   static constexpr double divergence = 30;
   // Share of the error before an outer iteration that its sweeps may leave; elastic_share holds
   // with single elastic bodies.
-  static constexpr double inner_share = 0.002, elastic_share = 0.005;
+  static constexpr double inner_share = 0.1, elastic_share = 0.005;
   // Share of the error at which the solve ends. With single elastic bodies sweeps may leave as
   // much: less would gain nothing. Cloth takes as many sweeps without this.
   static constexpr double final_share = 0.4;

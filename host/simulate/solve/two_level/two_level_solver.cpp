@@ -17,6 +17,11 @@ namespace {
 
 // Multiplications of all sweeps of a solve, after which it ends: about a second.
 constexpr std::int64_t most_operations = 1'000'000'000;
+// Steps of Newton's method, after which the iteration goes on.
+constexpr std::int64_t most_newton = 40;
+// Of the tolerance, at which they end: on stiff cloth the blocks D^-1, in which laws are measured,
+// are far below A^-1. A step or two more take little.
+constexpr double newton_share = 0.01;
 // Up to these sizes the contact solver is quick where the iteration fails.
 constexpr std::int64_t small_contacts = 256, small_rows = 128;
 
@@ -33,7 +38,8 @@ TwoLevelSolver::TwoLevelSolver(const Model& model,
       elastic_(factors_),
       blocks_(threads_),
       step_(model, relaxation_, threads_),
-      sweeps_(blocks_, switches_, threads_) {}
+      sweeps_(blocks_, switches_, threads_),
+      newton_(blocks_, switches_) {}
 
 /// Sets the contacts in the metric M, and starts from the velocities without contact.
 void TwoLevelSolver::prepare(const StepSystem& system,
@@ -82,6 +88,54 @@ void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
   blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
 }
 
+TwoLevelControl TwoLevelSolver::control(bool ends_early, double tolerance) {
+  contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
+  const TouchingSums alone =
+      blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data(), working_);
+  best_.residual = std::numeric_limits<double>::infinity();
+  return TwoLevelControl({.has_elastic = !elastic_.bodies().empty(),
+                          .ends_early = ends_early,
+                          .tolerance = tolerance,
+                          .natural_alone = alone.natural,
+                          .least_error = least_error_});
+}
+
+/// Finds the error of the present iterate, and keeps the best one.
+TwoLevelControl::Next TwoLevelSolver::measure(const StepSystem& system,
+                                              TwoLevelControl& control,
+                                              TwoLevelOutcome& outcome) {
+  blocks_.add_impulses(system.load, impulse_.data(), force_.data());
+  error_ = find_error(step_.run(system, x_, force_, y_));
+  const TwoLevelControl::Next next = control.next(error_, outcome.sweeps);
+  outcome.residual = control.residual();
+  if (control.is_best()) {
+    best_.residual = control.residual();
+    best_.x = x_;
+    best_.impulse = impulse_;
+  }
+  return next;
+}
+
+/// Newton's method from what prepare() has set.
+TwoLevelSolver::End TwoLevelSolver::find_by_newton(const StepSystem& system,
+                                                   TwoLevelOutcome& outcome) {
+  TwoLevelControl control = this->control(false, newton_share * options_.tolerance);
+  for (std::int64_t steps = 0; steps <= most_newton; ++steps, ++outcome.outer_iterations) {
+    const TwoLevelControl::Next next = measure(system, control, outcome);
+    if (next == TwoLevelControl::Next::converges) return End::converges;
+    if (next == TwoLevelControl::Next::fails) break;
+    if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
+      return End::is_stopped;
+    }
+    if (!newton_.step(system, step_.defect(), error_, x_, impulse_, contact_velocity_)) break;
+  }
+  if (std::isfinite(best_.residual)) {
+    x_ = best_.x;
+    impulse_ = best_.impulse;
+  }
+  return End::fails;
+}
+
 /// Iterates from what prepare() has set.
 /// @param ends_early  where it diverges
 TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
@@ -92,25 +146,9 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
   using Mixer = AndersonMixer<CpuExec, double>;
   mixed_.resize(index_of(Mixer::columns * size));
   Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
-  contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
-  const TouchingSums alone =
-      blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data(), working_);
-  TwoLevelControl control({.has_elastic = !elastic_.bodies().empty(),
-                           .ends_early = ends_early,
-                           .tolerance = options_.tolerance,
-                           .natural_alone = alone.natural,
-                           .least_error = least_error_});
-  best_.residual = std::numeric_limits<double>::infinity();
+  TwoLevelControl control = this->control(ends_early, options_.tolerance);
   while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
-    blocks_.add_impulses(system.load, impulse_.data(), force_.data());
-    const TwoLevelControl::Next next =
-        control.next(find_error(step_.run(system, x_, force_, y_)), outcome.sweeps);
-    outcome.residual = control.residual();
-    if (control.is_best()) {
-      best_.residual = control.residual();
-      best_.x = x_;
-      best_.impulse = impulse_;
-    }
+    const TwoLevelControl::Next next = measure(system, control, outcome);
     if (next == TwoLevelControl::Next::fails) return End::fails;
     if (next == TwoLevelControl::Next::converges) return End::converges;
     if (next == TwoLevelControl::Next::diverges) return End::diverges;
@@ -154,7 +192,12 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     prepare(system, problem, velocity);
     const bool can_be_damped =
         !elastic_.bodies().empty() && damping > TwoLevelControl::least_damping;
-    if (!step_.is_empty()) end = iterate(system, can_be_damped, outcome);
+    if (step_.is_empty()) break;
+    if (elastic_.bodies().empty() && newton_.set(system, islands_)) {
+      end = find_by_newton(system, outcome);
+      if (end != End::fails) break;
+    }
+    end = iterate(system, can_be_damped, outcome);
     if (end != End::diverges) break;
   }
   if (step_.is_empty()) {

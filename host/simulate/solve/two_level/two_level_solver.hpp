@@ -10,6 +10,7 @@
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/solve/problem/soft_problem.hpp"
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
+#include "host/simulate/solve/two_level/touching_newton.hpp"
 #include "host/simulate/solve/two_level/two_level_control.hpp"
 #include "host/simulate/solve/two_level/two_level_step.hpp"
 #include "host/simulate/solve/two_level/two_level_sweeps.hpp"
@@ -23,6 +24,9 @@ namespace tetwarp {
 ///     v_f = v + M^-1 (b + J^T r - A v)
 ///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
 ///     v = v_f + M^-1 J^T (r - r before)
+///
+/// Without elastic bodies and friction, and where a factorization of A with its contacts has few
+/// multiplications, Newton's method (TouchingNewton) comes first.
 ///
 /// Anderson's method accelerates v; with elastic bodies only from the second iteration on, and only
 /// while the error of the equations is larger than that of the laws. Sweeps accelerate r
@@ -68,7 +72,12 @@ class TwoLevelSolver {
                const SoftProblem& problem,
                const std::vector<Point3>& velocity);
   TwoLevelError find_error(double defect);
+  TwoLevelControl control(bool ends_early, double tolerance);
+  TwoLevelControl::Next measure(const StepSystem& system,
+                                TwoLevelControl& control,
+                                TwoLevelOutcome& outcome);
   End iterate(const StepSystem& system, bool ends_early, TwoLevelOutcome& outcome);
+  End find_by_newton(const StepSystem& system, TwoLevelOutcome& outcome);
   void take_best(TwoLevelOutcome& outcome);
   bool is_small() const;
 
@@ -83,6 +92,7 @@ class TwoLevelSolver {
   TouchingBlocks blocks_;
   TwoLevelStep step_;
   TwoLevelSweeps sweeps_;
+  TouchingNewton newton_;
   std::vector<double> x_, force_;        ///< [rows][3]
   std::vector<double> y_;                ///< as TouchingBlocks has it
   std::vector<double> weights_, mixed_;  ///< of AndersonMixer
@@ -90,6 +100,7 @@ class TwoLevelSolver {
   std::vector<double> stepped_;          ///< [3 contacts] impulses of the last step
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
   double least_error_ = 0;                                 ///< of the velocities without contact
+  TwoLevelError error_;                                    ///< of the present iterate
   Best best_;
 };
 

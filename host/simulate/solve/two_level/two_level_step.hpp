@@ -49,6 +49,8 @@ class TwoLevelStep {
              const std::vector<double>& x,
              const std::vector<double>& force,
              std::vector<double>& y);
+  /// d of the last run(), [rows][3].
+  const std::vector<double>& defect() const { return product_; }
   /// Adds M^-1 J^T (after - before) to the rows of elastic bodies, which sweeps leave as they are.
   /// @param before, after  impulses, [3 contacts]
   void add_elastic(const TouchingBlocks& blocks,

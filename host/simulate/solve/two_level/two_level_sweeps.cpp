@@ -15,7 +15,7 @@ namespace {
 
 // In an outer iteration; where sweeps converge slowly the next iteration goes on. With single
 // elastic bodies most sweeps are over few groups, so that more of them take little time.
-constexpr std::int64_t most_coupled_sweeps = 50, most_elastic_sweeps = 200;
+constexpr std::int64_t most_coupled_sweeps = 10, most_elastic_sweeps = 200;
 
 }  // namespace
 

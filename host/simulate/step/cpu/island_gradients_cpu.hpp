@@ -9,6 +9,7 @@
 
 #include "host/base/parallel.hpp"
 #include "host/exec/exec_cpu.hpp"
+#include "host/simulate/step/cpu/island_factors.hpp"
 #include "host/simulate/step/cpu/rest_gradients.hpp"
 #include "host/simulate/step/cpu/stages_cpu.hpp"
 #include "host/simulate/step/island_gradients.hpp"
@@ -28,6 +29,7 @@ class IslandGradients<CpuExec> {
   void set_islands(const std::vector<std::int32_t>& island_start) {
     start_ = island_start;
     ends_.resize(start_.size() - 1);
+    factors_.resize(ends_.size());
     small_.clear();
     large_.clear();
     for (std::size_t i = 0; i < ends_.size(); ++i) {
@@ -37,7 +39,8 @@ class IslandGradients<CpuExec> {
   }
 
   /// Solves all islands and calls take(end) for each. Small islands are one task each. Islands that
-  /// RestGradients can solve and that have not converged after `first_iterations` follow with it.
+  /// RestGradients can solve and that have not converged after `first_iterations` follow with it;
+  /// others that IslandFactors can solve follow with it after iterations that take as long.
   /// @param proceed  as of island_cg(); called by this thread only
   template <class T, class Proceed, class Take>
   void solve(const GradientArrays<T>& arrays,
@@ -47,7 +50,10 @@ class IslandGradients<CpuExec> {
     const CpuExec::Clock clock(exec_, gradient_label());
     const auto most_at_first = [&](std::int32_t island) {
       const std::int64_t most = options.max_iterations;
-      return can_follow<T>(island) ? std::min(most, first_iterations) : most;
+      if (can_follow<T>(island)) return std::min(most, first_iterations);
+      if constexpr (!std::is_same_v<T, double>) return most;
+      return std::min(most, factors_[static_cast<std::size_t>(island)].find_worth(
+                                arrays.rows, begin_of(island), end_of(island)));
     };
     const auto most_in_all = [&](std::int32_t) { return options.max_iterations; };
     for (GradientEnd& end : ends_) end = {};
@@ -130,7 +136,8 @@ class IslandGradients<CpuExec> {
     }
   }
 
-  /// Lists the islands that have not converged, and improves them by RestGradients, one task each.
+  /// Lists the islands that have not converged, and improves them by RestGradients or by their
+  /// factors, one task each.
   template <class T>
   void improve(const GradientArrays<T>& arrays, const GradientOptions& options) {
     if constexpr (std::is_same_v<T, double>) {
@@ -138,12 +145,15 @@ class IslandGradients<CpuExec> {
         const auto island = static_cast<std::int32_t>(i);
         const bool is_left = !ends_[i].is_converged && ends_[i].iterations >= first_iterations &&
                              ends_[i].iterations < options.max_iterations;
-        if (!is_left || !can_follow<T>(island)) continue;
+        if (!is_left || (!can_follow<T>(island) && !factors_[i].is_possible())) continue;
         improved_.push_back(island);
         (is_large(island) ? improved_large_ : improved_small_).push_back(island);
       }
       parallel_tasks(exec_.threads(), std::ssize(improved_), [&](std::int64_t k) {
         const std::int32_t island = improved_[static_cast<std::size_t>(k)];
+        if (!can_follow<T>(island)) {
+          return factors_[static_cast<std::size_t>(island)].solve(arrays, begin_of(island));
+        }
         const std::int64_t left = options.max_iterations - end_for(island).iterations;
         end_for(island).iterations += rest_.solve(arrays, island, begin_of(island), end_of(island),
                                                   {options.tolerance, left});
@@ -156,6 +166,7 @@ class IslandGradients<CpuExec> {
   RestGradients& rest_;
   Islands start_;
   std::vector<GradientEnd> ends_;
+  std::vector<IslandFactors> factors_;
   bool goes_on_ = true;
   Islands small_, large_;
   Islands improved_, improved_small_, improved_large_;  ///< by improve()

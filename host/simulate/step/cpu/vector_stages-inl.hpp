@@ -252,6 +252,27 @@ void substitute_of(const BlockFactor& l, double* w) {
 }
 
 template <int width>
+void subtract_products_of(const double* blocks,
+                          const std::int32_t* rows,
+                          std::int64_t count,
+                          const std::int32_t* slot,
+                          const double* factor,
+                          double* out) {
+  typedef double Four __attribute__((vector_size(32)));
+  for (std::int64_t e = 0; e < count; ++e, blocks += 12) {
+    double* const own = out + 12 * std::int64_t{slot[rows[e]]};
+    Four column[3];
+    __builtin_memcpy(column, blocks, sizeof(column));
+    for (int c = 0; c < 3; ++c) {
+      Four sum;
+      __builtin_memcpy(&sum, own + 4 * c, sizeof(sum));
+      sum -= column[0] * factor[c] + column[1] * factor[4 + c] + column[2] * factor[8 + c];
+      __builtin_memcpy(own + 4 * c, &sum, sizeof(sum));
+    }
+  }
+}
+
+template <int width>
 constexpr VectorStages vector_stages_of(const char* name) {
   return {name,
           tet_forces_of<width>,
@@ -262,7 +283,8 @@ constexpr VectorStages vector_stages_of(const char* name) {
           add_rows_of<width>,
           add_rows_float_of<width>,
           add_blocks_of<width>,
-          substitute_of<width>};
+          substitute_of<width>,
+          subtract_products_of<width>};
 }
 
 }  // namespace tetwarp

@@ -59,6 +59,14 @@ struct VectorStages {
                      float* block);
   /// w = L^-T L^-1 w. @param w  [columns][4], the last of each is not used
   void (*substitute)(const BlockFactor& l, double* w);
+  /// out[slot[rows[e]]] -= blocks[e] factor^T of 3x3 blocks, whose three columns have four numbers,
+  /// the last of each not used.
+  void (*subtract_products)(const double* blocks,
+                            const std::int32_t* rows,
+                            std::int64_t count,
+                            const std::int32_t* slot,
+                            const double* factor,
+                            double* out);
 };
 
 /// The widest that this processor has.

@@ -1,0 +1,33 @@
+/// @file island_factors.hpp
+/// IslandFactors: the system of a coupling island solved by its factors.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "host/simulate/step/cpu/block_lu.hpp"
+#include "kernels/body/island_cg.hpp"
+
+namespace tetwarp {
+
+/// For narrow cloth and chains, whose systems block Jacobi solves slowly and whose factors have few
+/// entries.
+class IslandFactors {
+ public:
+  /// Iterations of conjugate gradients that have as many multiplications as a factorization. The
+  /// pattern of the rows is found at the first call; islands of few or of very many rows have no
+  /// factors, and all iterations are worth it.
+  std::int64_t find_worth(const SystemRows& rows, std::int64_t begin, std::int64_t end);
+  /// @pre find_worth()
+  bool is_possible() const { return lu_ != nullptr; }
+  /// a.x = A^-1 b on the rows of the island; they stay as they are if A has no factors.
+  void solve(const GradientArrays<double>& a, std::int64_t begin);
+
+ private:
+  std::unique_ptr<BlockLu> lu_;  ///< null: not possible
+  std::int64_t row_count_ = 0;   ///< of the pattern
+  std::int64_t worth_ = 0;
+  std::vector<double> x_;
+};
+
+}  // namespace tetwarp
