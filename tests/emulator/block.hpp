@@ -49,8 +49,9 @@ class Block {
  public:
   /// The block that the calling OS thread runs.
   static Block& current() {
+    if (chosen() != nullptr) return *chosen();
     static thread_local Block block;
-    return chosen() != nullptr ? *chosen() : block;
+    return block;
   }
   /// Makes a block the current one of the calling OS thread; null: its own.
   static void choose(Block* block) { chosen() = block; }
