@@ -50,11 +50,11 @@ __global__ void __launch_bounds__(threads, 512 / threads)
 }
 
 /// Blocks: as many as are resident together, at most. Threads: sum_threads. Shared:
-/// GridTeam::shared_bytes, dynamic. Registers: up to 128.
+/// GridTeam::shared_bytes, dynamic. Registers: up to 255.
 /// @param sums  [GridTeam::sum_bytes(rows of the island)]
 /// @param end   out, [1]
 template <class T>
-__global__ void __launch_bounds__(sum_threads, 4) island_cg_grid_kernel(GradientArrays<T> arrays,
+__global__ void __launch_bounds__(sum_threads, 2) island_cg_grid_kernel(GradientArrays<T> arrays,
                                                                         IslandRows rows,
                                                                         GradientOptions options,
                                                                         void* sums,
