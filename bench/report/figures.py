@@ -68,7 +68,7 @@ def lines_of(files, pattern, counter):
 def draw(files, folder):
     from chart import Chart, use_logarithms
 
-    Chart.machine = "; ".join(rows.machine_of(context) for context, _ in files)
+    Chart.machine = "\n".join(rows.machine_of(context) for context, _ in files)
     for name, title, x, pattern, counter in (
         ("time_against_size", "1,080 tetrahedra, turned by 45° twice; 128³ to 512³ samples",
          "output voxels", SIZES, "voxels"),
