@@ -20,7 +20,7 @@ struct alignas(16) PairMap {
 static_assert(sizeof(PairMap) == 80);
 
 /// The rows of a cell within the box of a tetrahedron: a rectangle along j and k.
-struct RowBox {
+struct PairRows {
   int first_j, first_k;
   int width;      ///< rows along j, 1 to 8
   int layers;     ///< along k
@@ -32,8 +32,8 @@ struct RowBox {
   }
 };
 
-/// What the rows of a cell need of a tetrahedron before its bounds: a RowBox, three bits a number,
-/// nine of per_width, and the numbers of bounds from below and above, two bits each.
+/// What the rows of a cell need of a tetrahedron before its bounds: a PairRows, three bits a
+/// number, nine of per_width, and the numbers of bounds from below and above, two bits each.
 using PairHead = std::uint32_t;
 constexpr int width_bits = 3, first_k_bits = 6, layer_bits = 9, per_width_bits = 12;
 constexpr int below_bits = 21, above_bits = 23;
@@ -60,7 +60,7 @@ TETWARP_HD PairHead pair_head(const TetSetup& tet, const int* corner) {
          per_width << per_width_bits;
 }
 
-TETWARP_HD RowBox row_box(PairHead head) {
+TETWARP_HD PairRows row_box(PairHead head) {
   const auto field = [&](int bits, unsigned mask) { return static_cast<int>(head >> bits & mask); };
   return {field(0, 7), field(first_k_bits, 7), field(width_bits, 7) + 1, field(layer_bits, 7) + 1,
           field(per_width_bits, 511)};
