@@ -80,8 +80,8 @@ struct RasterJob : RasterGeometry {
   SourceView<T> source;
   Filter filter;
   T background;
-  Quantity reorientation;  ///< for which the matrices of transforms were computed
-  T* volume;               ///< [k][j][i][component]
+  Quantity reorientation;                   ///< for which the matrices of transforms were computed
+  T* volume;                                ///< [k][j][i][component]
   const PackedSample<T>* packed = nullptr;  ///< the source, for a device; null: not packed
 };
 
