@@ -14,7 +14,7 @@ namespace {
 constexpr double move_step = 5e-3;
 
 /// An elastic block with a held node, and a spinning rigid body coupled to it.
-Model coupled_model() {
+Model coupled_bodies() {
   Model model = empty_model();
   const std::int32_t block = add_block(model, {.cells = {2, 1, 1}});
   model.prescribed[0] = 1;
@@ -43,7 +43,7 @@ std::vector<std::unique_ptr<BodyStepper>> both(const Model& model) {
 }
 
 TEST(StepperMove, ReturnsTheSystemThatItSolved) {
-  const Model model = coupled_model();
+  const Model model = coupled_bodies();
   for (const auto& stepper : both(model)) {
     stepper->solve(coupled_input(model));
     const StepSystem system = stepper->system();
@@ -65,7 +65,7 @@ TEST(StepperMove, ReturnsTheSystemThatItSolved) {
 }
 
 TEST(StepperMove, MovesByTheVelocitiesThatItWasGiven) {
-  const Model model = coupled_model();
+  const Model model = coupled_bodies();
   const auto free_stepper = make_cpu_stepper(model, {});
   free_stepper->step(coupled_input(model));
   const ModelState free_state = state_of(*free_stepper);
@@ -93,7 +93,7 @@ TEST(StepperMove, MovesByTheVelocitiesThatItWasGiven) {
 }
 
 TEST(StepperMove, MovesBodiesByTheirFractionOfTheStep) {
-  const Model model = coupled_model();
+  const Model model = coupled_bodies();
   for (const auto& stepper : both(model)) {
     stepper->solve(coupled_input(model));
     std::vector<Point3> velocity;
@@ -115,7 +115,7 @@ TEST(StepperMove, MovesBodiesByTheirFractionOfTheStep) {
 }
 
 TEST(StepperMove, IsTheStepWithoutFractions) {
-  const Model model = coupled_model();
+  const Model model = coupled_bodies();
   for (const auto& stepper : both(model)) {
     const auto whole = make_cpu_stepper(model, {.linear_tolerance = 1e-13});
     whole->step(coupled_input(model));
@@ -132,7 +132,7 @@ TEST(StepperMove, IsTheStepWithoutFractions) {
 }
 
 TEST(StepperMove, RefusesFractionsOfTooFewBodies) {
-  const Model model = coupled_model();
+  const Model model = coupled_bodies();
   for (const auto& stepper : both(model)) {
     stepper->solve(coupled_input(model));
     EXPECT_THROW(stepper->move(move_step, std::vector<double>{1}), std::invalid_argument);
