@@ -10,7 +10,7 @@
 
 namespace tetwarp::test {
 namespace {
-using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 /// A matrix with a symmetric pattern and other values on both sides of the diagonal.
 class Problem {
@@ -34,9 +34,9 @@ class Problem {
     lu.clear();
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * count_, 3 * count_);
     const auto add = [&](std::int32_t i, std::int32_t j, double shift) {
-      Matrix block;
+      RowMajor block;
       for (double& value : block.reshaped()) value = normal_(random_);
-      block += shift * Matrix::Identity();
+      block += shift * RowMajor::Identity();
       lu.add(i, j, block.data());
       dense.block<3, 3>(3 * i, 3 * j) += block;
     };
