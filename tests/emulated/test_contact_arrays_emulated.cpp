@@ -45,7 +45,7 @@ TEST(ContactArraysEmulated, ASolveCopiesCountsAndNoArray) {
       first_to_device = again.to_device;
     }
     EXPECT_EQ(again.to_host, first_to_host);
-    EXPECT_EQ(again.to_device, first_to_device);
+    EXPECT_LE(again.to_device, first_to_device);  // an island that a grid solves needs no list
   }
 }
 
