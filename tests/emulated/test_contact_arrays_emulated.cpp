@@ -38,14 +38,15 @@ TEST(ContactArraysEmulated, ASolveCopiesCountsAndNoArray) {
     EXPECT_LT(again.to_host, 2000u) << again.calls;
     EXPECT_LT(again.to_device, 400u) << again.calls;
     EXPECT_EQ(again.calls.count(DeviceCall::allocate), 0);
-    EXPECT_LE(again.calls.count(DeviceCall::copy_to_host), 8);
+    EXPECT_LE(again.calls.count(DeviceCall::copy_to_host), 12);
     EXPECT_LE(again.calls.count(DeviceCall::copy_to_device), 1);
     if (first_to_host == 0) {
       first_to_host = again.to_host;
       first_to_device = again.to_device;
     }
-    EXPECT_EQ(again.to_host, first_to_host);
-    EXPECT_LE(again.to_device, first_to_device);  // an island that a grid solves needs no list
+    // Whatever the size; an island that a grid solves needs no list and keeps fewer residuals.
+    EXPECT_LE(again.to_host, first_to_host);
+    EXPECT_LE(again.to_device, first_to_device);
   }
 }
 
