@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// About how long a warp takes on the threads that the options ask for, if the mesh covers all
+/// Estimated time of a warp on the threads of the options, if the mesh covers all
 /// voxels [s]. Right within a factor of three: voxels outside cost less, steep maps and tetrahedra
 /// of less than 30 voxels more.
 /// @param samples  output voxels times components, of all outputs and steps

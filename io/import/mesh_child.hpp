@@ -35,7 +35,7 @@ std::vector<Point3> read_points_in_child(const std::string& path);
 
 /// Has the program write a file with other points and an array `inside`; errors as above.
 /// @param numbers  a file of x y z as float64 for every point, then a byte for every point
-/// @param output   of the format that the end of its name tells
+/// @param output   of the format of its suffix
 void place_points_in_child(const std::string& path,
                            const std::string& numbers,
                            const std::string& output);

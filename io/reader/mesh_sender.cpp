@@ -66,7 +66,7 @@ std::string problem_of(const IoError& error) {
   return std::string(error.what()).substr(names.size());
 }
 
-/// Calls what the words ask for and sends its result.
+/// Runs the function that the arguments name and sends its result.
 void answer(MessageWriter& message,
             const std::vector<std::string>& words,
             const ReaderCalls& calls) {

@@ -27,12 +27,13 @@ TETWARP_IO_EXPORT bool is_transform_file(const std::string& path);
 ///
 /// - ITK's text (.tfm, .txt) and MATLAB files (.mat): affine, rigid, similarity, scale and
 ///   translation transforms and composites of these, in LPS
-/// - NIfTI displacement fields. Their intent tells the axes of the components: VECTOR is LPS and mm
+/// - NIfTI displacement fields. The intent code states the axes of the components: VECTOR is LPS
+/// and mm
 ///   (ITK, ANTs), DISPVECT is RAS in the header's unit, VECTOR named NREG_TRANS is NiftyReg's:
 ///   displacements or positions in RAS. Any other needs `axes`
 /// - NRRD files and MetaImages of three components: LPS, as ITK and 3D Slicer write them
 /// - the array `tetwarp_displacement` of a VTKHDF volume, as `tetwarp warp` writes it
-/// @param axes  of the components of a field in an image, instead of what its format tells
+/// @param axes  of the components of a field in an image, instead of those that its format states
 /// @throws IoError  on other transforms, files that do not tell their convention, damaged files
 TETWARP_IO_EXPORT TransformFile read_transform(const std::string& path,
                                                const std::optional<Axes>& axes = {});

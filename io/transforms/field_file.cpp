@@ -14,7 +14,7 @@ struct FieldConvention {
   Axes axes;             ///< of the components
   bool is_in_mm;         ///< else in the unit of the header
   bool holds_positions;  ///< else displacements
-  std::string said_by;   ///< what in the file, or who
+  std::string said_by;   ///< origin of the convention: a header field, or an option
 };
 
 FieldConvention convention_of(const std::string& path,

@@ -24,7 +24,7 @@ inline bool is_contiguous(const SliceBytes& part) {
 }
 
 /// Pieces of at most `most` bytes in the order of the array. The last ones get smaller, down to an
-/// eighth, so that `takers`, who take pieces in order, end at about the same time.
+/// eighth, so that `takers` threads, which take pieces in order, end at about the same time.
 /// @param most  > 0
 inline std::vector<SlicePiece> pieces_of(const SliceBytes& part,
                                          std::size_t most,

@@ -32,11 +32,11 @@ struct InvertArguments {
   bool quiet = false;
 };
 
-/// What tells whether a deformation has an inverse.
+/// Counts that show whether a deformation has an inverse.
 struct InverseCheck {
   std::int64_t inverted = 0;  // tetrahedra, of hexahedra their parts
   std::int64_t points = 0;    // nodes and centers of cells that were moved there and back
-  std::int64_t folded = 0;    // of these, those that another cell brings back elsewhere
+  std::int64_t folded = 0;    // of these, those where another cell maps to a different place
   double largest_error = 0;   // of the others
 };
 

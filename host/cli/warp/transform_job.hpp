@@ -11,7 +11,7 @@ namespace tetwarp::cli {
 bool names_transform(const WarpArguments& arguments);
 
 /// Resamples a volume, all steps of a series, in memory.
-/// @param command  tells which options were given: those that need a mesh are refused
+/// @param command  the parsed options: those that need a mesh are refused
 /// Throws std::invalid_argument, IoError, Cancelled.
 void run_transform_job(const WarpArguments& arguments, const CLI::App& command);
 
