@@ -20,7 +20,8 @@ tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_output.cpp h5_read.cpp h5_rows.cpp h5_write.cpp
   value_names.cpp)
 tetwarp_sources(tetwarp_io io/image
-  image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp nrrd_header.cpp)
+  image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp mgh_header.cpp
+  nrrd_header.cpp)
 tetwarp_sources(tetwarp_io io/import
   child_process.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp)
 tetwarp_sources(tetwarp_io io/nifti
