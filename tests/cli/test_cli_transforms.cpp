@@ -116,5 +116,22 @@ TEST_F(CliTransforms, OptionsOfMeshesAndBadFilesAreRefused) {
   EXPECT_FALSE(fs::exists(scene / "o.vtkhdf"));
 }
 
+/// The mesh covers every voxel center; cut in half, it moves all of them as its nearest points.
+TEST_F(CliTransforms, VoxelsOutsideMoveWithTheNearestPoint) {
+  const Mesh whole = box_mesh();
+  Mesh part = whole;
+  part.tets.resize(1);
+  const std::vector<Point3> shift(whole.rest_positions.size(), Point3{1.5, -2, 0.5});
+  write_mesh(scene / "whole.vtkhdf", whole, {shift}, {0});
+  write_mesh(scene / "part.vtkhdf", part, {shift}, {0});
+
+  run({"warp", "volume.vtkhdf", "whole.vtkhdf", "-o", "whole.nii.gz", "--outside", "nearest"});
+  run({"warp", "volume.vtkhdf", "part.vtkhdf", "-o", "part.nii.gz", "--outside", "nearest"});
+  run({"warp", "volume.vtkhdf", "part.vtkhdf", "-o", "far.nii.gz", "--outside", "falloff:1e6"});
+
+  EXPECT_LT(difference("whole.nii.gz", "part.nii.gz"), 1e-2);
+  EXPECT_LT(difference("whole.nii.gz", "far.nii.gz"), 1e-2);
+}
+
 }  // namespace
 }  // namespace tetwarp::test

@@ -121,6 +121,9 @@ std::string noun_of(const std::string& path, FileKind kind) {
   if (kind == FileKind::unknown && (has_nifti_name(path) || has_extension(path, ".hdr"))) {
     return "file without a NIfTI header (damaged, truncated or of another format)";
   }
+  if (kind == FileKind::unknown && (has_extension(path, ".mgz") || has_extension(path, ".mgh"))) {
+    return "file without a header of FreeSurfer (damaged, truncated or of another format)";
+  }
   return name_of(kind);
 }
 

@@ -128,8 +128,11 @@ void write_step(const WarpArguments& arguments,
 bool names_transform(const WarpArguments& arguments) {
   const std::string& last = arguments.files.back();
   std::error_code error;
-  return std::filesystem::exists(last, error) &&
-         is_transform_file(last, arguments.transform_options());
+  if (!std::filesystem::exists(last, error)) return false;
+  if (arguments.fsl && kind_of(last) != FileKind::nifti) {
+    throw IoError(last, "", "is no NIfTI image; --fsl is for warp fields of FSL");
+  }
+  return is_transform_file(last, arguments.transform_options());
 }
 
 void run_transform_job(const WarpArguments& arguments, const CLI::App& command) {
