@@ -58,16 +58,18 @@ function(tetwarp_add_tests program)
   endif()
 endfunction()
 
-# tetwarp_discover(PROGRAM LABEL): all tests of a program carry the same label. Where they run on
-# a device, those named after back end cuda run one at a time.
+# tetwarp_discover(PROGRAM LABEL): all tests of a program carry the same label, except those of suites
+# named Long..., which have that label. Where they run on a device, those named after back end cuda
+# run one at a time.
 function(tetwarp_discover program label)
-  set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT 300 LABELS ${label})
+  set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES PROPERTIES TIMEOUT 300 LABELS)
+  gtest_discover_tests(${program} TEST_FILTER "Long*" ${options} long)
   if(tetwarp_device_tests)
-    gtest_discover_tests(${program} TEST_FILTER "-*/cuda*:*_cuda" ${options})
-    gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda" ${options} RESOURCE_LOCK gpu)
+    gtest_discover_tests(${program} TEST_FILTER "-Long*:*/cuda*:*_cuda" ${options} ${label})
+    gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda:-Long*" ${options} ${label}
+      RESOURCE_LOCK gpu)
   else()
-    gtest_discover_tests(${program} ${options})
+    gtest_discover_tests(${program} TEST_FILTER "-Long*" ${options} ${label})
   endif()
 endfunction()
 
