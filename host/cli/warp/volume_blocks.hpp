@@ -18,10 +18,10 @@ class VolumeBlocks {
   /// @param task, ranks  kept by the caller; all ranks plan the same blocks
   VolumeBlocks(const VolumeTask& task, const Ranks& ranks);
 
-  /// @param before_reading  called before the file of the mesh is read, which is done where --memory
+  /// @param before_reading  called before the file of the mesh is read, which is done where memory
   ///                        is too low
   /// @throws std::invalid_argument  positions that are not finite or too far from the grid; memory
-  ///                                that is too low, with the least limit that suffices for all steps
+  ///                                that is too low, with the least limit for all steps
   BlockPlan plan(const std::vector<Point3>& positions, const std::function<void()>& before_reading);
 
   /// Memory of the process besides that of the blocks [byte]; 0 for a whole volume.
