@@ -106,7 +106,7 @@ TEST(WarpEmulated, OutputsOnTheDeviceCostNoCopy) {
 }
 
 TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
-  const scenes::Scene scene = scenes::adversarial_scene("tiny", 10);
+  const scenes::Scene scene = scenes::adversarial_scene("tiny", 16);
   const std::vector<Volume> sources = sources_of(scene);
   std::vector<Point3> small = scene.deformed;
   for (Point3& p : small) {
@@ -127,8 +127,8 @@ TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
 }
 
 /// The step whose allocation fails needs larger lists.
-TEST(WarpEmulated, AStepAfterAFailedAllocationIsRight) {
-  const scenes::Scene scene = scenes::adversarial_scene("tiny", 10);
+TEST(LongWarpEmulated, AStepAfterAFailedAllocationIsRight) {
+  const scenes::Scene scene = scenes::adversarial_scene("tiny", 16);
   const std::vector<Volume> sources = sources_of(scene);
   Series anew(sources, scene, on_device(false));
   anew.step(scene.deformed);
