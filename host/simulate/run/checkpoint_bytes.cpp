@@ -22,6 +22,13 @@ void CheckpointReader::read(bool& value) {
   value = byte != 0;
 }
 
+void CheckpointReader::read(std::string& text) {
+  std::uint64_t size = 0;
+  read(size);
+  const std::byte* const bytes = take(static_cast<std::size_t>(size));
+  text.assign(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
+}
+
 const std::byte* CheckpointReader::take(std::size_t count) {
   if (count > bytes_.size()) {
     throw std::invalid_argument("checkpoint: incomplete, " + std::to_string(count) +

@@ -28,6 +28,10 @@ class CheckpointWriter {
     add(static_cast<std::uint64_t>(list.size()));
     append(list.data(), list.size() * sizeof(T));
   }
+  void add(const std::string& text) {
+    add(static_cast<std::uint64_t>(text.size()));
+    append(text.data(), text.size());
+  }
   /// One byte, whether there is a value, and the value.
   template <class T>
   void add(const std::optional<T>& value) {
@@ -65,6 +69,7 @@ class CheckpointReader {
     std::memcpy(&value, take(sizeof(T)), sizeof(T));
   }
   void read(bool& value);
+  void read(std::string& text);
   /// @param list  of the length that the checkpoint must have
   template <class T>
   void read(std::vector<T>& list) {
