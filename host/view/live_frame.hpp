@@ -32,10 +32,11 @@ struct GrabView {
 };
 
 struct LiveFrame {
-  std::int64_t step = 0, tick = 0;          ///< of the scene; made in all
-  double time = 0;                          ///< [s]
-  std::vector<std::vector<Point3>> points;  ///< [bodies] of the surfaces, world
-  std::vector<VolumeFrame> volumes;         ///< [volumes], empty: not warped
+  std::int64_t step = 0, tick = 0;  ///< of the scene; made in all
+  double time = 0;                  ///< [s]
+  std::vector<std::vector<Point3>>
+      points;                        ///< [bodies] of the surfaces, world; empty: of a failure
+  std::vector<VolumeFrame> volumes;  ///< [volumes], empty: not warped
   std::vector<ContactArrow> contacts;
   std::optional<GrabView> grab;
   bool is_paused = false, is_converged = true;

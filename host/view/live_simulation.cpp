@@ -92,6 +92,22 @@ bool LiveSimulation::may_step() const {
 }
 
 void LiveSimulation::run() {
+  try {
+    loop();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+/// A frame of an earlier state, or without any, that says why no more follow.
+void LiveSimulation::fail(const std::string& problem) {
+  LiveFrame& frame = frames_.back();
+  frame.message = problem;
+  frame.has_failed = frame.is_last = true;
+  frames_.publish();
+}
+
+void LiveSimulation::loop() {
   due_ = Clock::now();
   while (true) {
     repeat_input();
@@ -115,9 +131,9 @@ PointHandle LiveSimulation::handle_at(std::size_t body, const Point3& point) con
   const double size = norm(minus(bounds.high, bounds.low));
   PointHandle handle{.body = simulator_.scene().bodies[body].name, .center = point};
   handle.radius = options_.grab_radius.value_or(grab_share * size);
-  // Moves a free body within about 0.1 s, and presses an elastic one in by about the distance that
-  // the mouse moves.
-  const double free = 100 * of.mass, pressed = 2 * mean_of(of.shear_modulus) * handle.radius;
+  // A free body follows within about 0.1 s. An elastic one is pressed in by about half of the way
+  // of the mouse: a disc of radius r meets the stiffness 4 mu r / (1 - nu).
+  const double free = 400 * of.mass, pressed = 8 * mean_of(of.shear_modulus) * handle.radius;
   handle.stiffness = options_.grab_stiffness.value_or(std::max({free, pressed, 1e-9}));
   handle.damping = 0.2 * std::sqrt(handle.stiffness * of.mass);
   return handle;

@@ -67,6 +67,8 @@ class LiveSimulation {
   };
 
   void run();
+  void loop();
+  void fail(const std::string& problem);
   std::vector<Order> take_orders(bool waits);
   void follow(const Order& order);
   void act(const InputEvent& event);

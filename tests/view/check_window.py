@@ -120,9 +120,9 @@ def check_pull(command, environment, folder, body):
                           stderr=subprocess.PIPE, text=True) as window:
         try:
             subprocess.run(
-                f"""xdotool search --sync --onlyvisible --name 'tetwarp: scene.json' windowmove %1 0 0
-                    windowfocus --sync %1 mousemove --window %1 {x} {y} mousedown 1
-                    mousemove --window %1 {x + 40} {y - 10} key s mousemove --window %1 {x + 60} {y - 20}
+                f"""xdotool search --sync --onlyvisible --name tetwarp:.scene.json windowmove %1 0 0
+                    windowfocus --sync %1 mousemove {x} {y} mousedown 1
+                    mousemove {x + 40} {y - 10} key s mousemove {x + 60} {y - 20}
                     key s key s mouseup 1 key s key s key q""".split(),
                 env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
             status = window.wait(SECONDS)

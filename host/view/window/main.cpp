@@ -2,13 +2,16 @@
 /// The program tetwarp-view, which `tetwarp view` starts: tetwarp-view NAME=VALUE...
 #include <X11/Xlib.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <optional>
+#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
+#include <utility>
 #include <vector>
 
 #include "host/view/live_simulation.hpp"
@@ -72,12 +75,11 @@ void run(const ViewOptions& options) {
   ViewWindow window(scene, *simulation, options);
   simulation->begin();
   window.run();
-  if (!options.screenshot.empty()) window.save_picture(options.screenshot);
+  const std::string problem = window.failure();
+  if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   simulation->end();
   write_results(*simulation, options);
-  if (const std::string problem = window.failure(); !problem.empty()) {
-    throw std::runtime_error(options.scene() + ": " + problem);
-  }
+  if (!problem.empty()) throw std::runtime_error(options.scene() + ": " + problem);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ void ViewWindow::set_up_window() {
   camera->SetViewAngle(scene_.camera.angle * 180 / std::numbers::pi);
   window_->SetMultiSamples(0);
   window_->SetSize(static_cast<int>(options_.width), static_cast<int>(options_.height));
-  window_->SetWindowName(("tetwarp: " + scene_.name).c_str());
+  window_->SetWindowName("tetwarp");
   window_->AddRenderer(renderer_);
   events_->SetRenderWindow(window_);
   style_text(text_, 15);
@@ -89,6 +89,7 @@ void ViewWindow::set_up_mouse() {
 void ViewWindow::run() {
   while (!simulation_.frames().take()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   LiveFrame& frame = simulation_.frames().front();
+  if (frame.points.empty() && frame.has_failed) return;
   actors_.emplace(scene_, frame, renderer_);
   volumes_.emplace(scene_, options_.preset, renderer_);
   window_->Render();
@@ -108,14 +109,17 @@ void ViewWindow::run() {
   events_->AddObserver(vtkCommand::TimerEvent, tick);
   events_->CreateRepeatingTimer(timer_interval);
   draw();
+  window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
   events_->Start();
 }
 
 void ViewWindow::on_timer() {
   if (simulation_.frames().take()) {
     LiveFrame& frame = simulation_.frames().front();
-    actors_->show(frame);
-    volumes_->show(frame);
+    if (frame.points.size() == scene_.triangles.size()) {
+      actors_->show(frame);
+      volumes_->show(frame);
+    }
     draw();
   }
   const LiveFrame& frame = simulation_.frames().front();
@@ -237,10 +241,8 @@ bool ViewWindow::turn_window(int x, int y) {
 }
 
 void ViewWindow::save_picture(const std::string& path) {
-  if (volumes_) {
-    volumes_->set_coarse(false);
-    volumes_->show(simulation_.frames().front());
-  }
+  volumes_->set_coarse(false);
+  volumes_->show(simulation_.frames().front());
   vtkNew<vtkWindowToImageFilter> reader;
   reader->SetInput(window_);
   reader->ReadFrontBufferOff();
@@ -255,7 +257,7 @@ void ViewWindow::save_picture(const std::string& path) {
     std::memcpy(image.rgb.data() + row_bytes * static_cast<std::size_t>(size[1] - 1 - row),
                 picture->GetScalarPointer(0, row, 0), row_bytes);
   }
-  if (volumes_) volumes_->set_coarse(is_software_);
+  volumes_->set_coarse(is_software_);
   write_png(path, image);
 }
 

@@ -28,7 +28,9 @@ class ViewWindow {
 
   /// Draws until the user or the last step ends it.
   void run();
-  /// Writes what is shown. Throws IoError.
+  /// Whether anything was drawn.
+  bool has_picture() const { return volumes_.has_value(); }
+  /// Writes what is shown. @pre has_picture() @throws IoError
   void save_picture(const std::string& path);
   /// What ended the simulation, or empty.
   std::string failure();
