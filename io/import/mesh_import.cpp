@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -16,6 +13,7 @@
 
 #include "host/base/point3.hpp"
 #include "io/files/extension.hpp"
+#include "io/files/text_file.hpp"
 #include "io/h5/value_names.hpp"
 #include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"
@@ -129,9 +127,7 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
                       " to import must end in .msh, .vtu or .vtk" +
                       (options.needs_solids ? "" : ", .stl, .ply, .obj or .vtp"));
   }
-  if (!std::ifstream(path)) {
-    throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-  }
+  check_readable(path);
   ImportedMesh mesh = read_mesh_in_child(path, options, limits_for(path, options.time_limit));
   check_imported(path, mesh, options.needs_solids);
   merge_cells(mesh);

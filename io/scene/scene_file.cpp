@@ -2,15 +2,14 @@
 /// Scene files: the keys of the scene itself, the files that it names, and the checks.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
 
+#include "io/files/text_file.hpp"
 #include "io/scene/scene_actions.hpp"
 #include "io/scene/scene_body.hpp"
 #include "io/scene/scene_contact.hpp"
@@ -143,13 +142,7 @@ Scene parse_scene(const std::string& text,
 }
 
 Scene read_scene(const std::string& file, std::vector<std::string>* files) {
-  const std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || text.bad()) {
-    throw IoError(file, "", "cannot be read; check the name of the scene file");
-  }
-  return parse_scene(text.str(), file, fs::path(file).parent_path().string(), files);
+  return parse_scene(read_text(file), file, fs::path(file).parent_path().string(), files);
 }
 
 }  // namespace tetwarp
