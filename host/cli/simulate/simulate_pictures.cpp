@@ -112,6 +112,8 @@ ScenePictures::ScenePictures(const Simulator& simulator, const SimulateArguments
     options_.camera.target = {c[3], c[4], c[5]};
     const bool is_from_above = std::hypot(c[0] - c[3], c[1] - c[4]) < 1e-6 * std::abs(c[2] - c[5]);
     if (is_from_above) options_.camera.up = {0, 1, 0};
+  } else if (simulator.scene().camera) {
+    options_.camera = *simulator.scene().camera;
   } else {
     options_.camera = default_camera();
   }
