@@ -209,8 +209,8 @@ struct PointMoveOp {
 /// ends, in hexahedra within 2^-36. Cost: about four tetrahedra tested per point, 128 bytes each.
 /// Source: ours.
 template <class Exec>
-void point_move(Exec& exec, const PointMoveOp& body) {
-  exec.for_each("points/move", body.owners.size, body);
+void point_move(Exec& exec, const PointMoveOp& op) {
+  exec.for_each("points/move", op.owners.size, op);
 }
 
 }  // namespace tetwarp
