@@ -160,6 +160,7 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_reference_tests SOURCES
     tests/warp/test_coverage.cpp
+    tests/warp/test_warp_operator.cpp
     tests/warp/test_warp_values.cpp)
   tetwarp_discover(tetwarp_reference_tests reference)
 
@@ -296,7 +297,7 @@ endif()
 # ---- every public header compiles alone, without CUDA ------------------------------------------
 set(tetwarp_public_headers backend blocks camera choices contact contact_adhesion contact_arrays
   contact_problem contact_tracker error make map_points mesh names page_lock report resample scene
-  scene_parts simulate tetwarp version volume warp)
+  scene_parts simulate tetwarp version volume warp warp_operator)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers contact_io io mesh_import point_file scene_io transform_file)
 endif()

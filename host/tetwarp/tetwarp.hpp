@@ -24,3 +24,4 @@
 #include <tetwarp/version.hpp>
 #include <tetwarp/volume.hpp>
 #include <tetwarp/warp.hpp>
+#include <tetwarp/warp_operator.hpp>
