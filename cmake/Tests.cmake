@@ -249,7 +249,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_parity.cpp
     tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
     tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp
-    tests/warp/test_warp_intensity.cpp tests/warp/test_warp_quantities.cpp
+    tests/warp/test_warp_intensity.cpp tests/warp/test_warp_outside.cpp
+    tests/warp/test_warp_quantities.cpp
     tests/warp/test_warp_rounding.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
   set_target_properties(tetwarp_backend_tests PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 5)
