@@ -70,7 +70,7 @@ tetwarp_sources(tetwarp host/simulate/model
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
-  body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
+  added_handles.cpp body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
   fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
   simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
   step_records.cpp tet_energies.cpp)
