@@ -13,8 +13,8 @@
 
 #include "host/base/point3.hpp"
 #include "io/files/extension.hpp"
-#include "io/files/text_file.hpp"
 #include "io/files/numbered_files.hpp"
+#include "io/files/text_file.hpp"
 #include "io/h5/value_names.hpp"
 #include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"

@@ -3,10 +3,10 @@
 ///
 ///     tetwarp_step_counts WEIGHTS WORKLOAD...
 ///
-/// WEIGHTS: lines "address operations", of the basic blocks of this program (bench/sass/weights.py).
-/// Prints a JSON array with an object per workload: its launches in each of the two poses between
-/// which the rows `resident/` of the benchmarks alternate, and that of the floor. Of the raster one
-/// block in several runs, chosen by a fixed seed.
+/// WEIGHTS: lines "address operations", of the basic blocks of this program
+/// (bench/sass/weights.py). Prints a JSON array with an object per workload: its launches in each
+/// of the two poses between which the rows `resident/` of the benchmarks alternate, and that of the
+/// floor. Of the raster one block in several runs, chosen by a fixed seed.
 #include <cxxabi.h>
 
 #include <algorithm>
@@ -81,11 +81,12 @@ class WorkloadCounts {
         source_(inputs().image(workload)),
         output_(static_cast<std::size_t>(scene_.output_grid.voxel_count()) * sizeof(float)),
         counter_(
-            weights, [] { return simt::Device::only().ranges(); },
+            weights,
+            [] { return simt::Device::only().ranges(); },
             [this](const std::string& kernel) { return sample_of(kernel, one_in_); }) {
     constexpr std::int64_t group_voxels = 4 * 512;
-    one_in_ = static_cast<int>(
-        std::max<std::int64_t>(1, scene_.output_grid.voxel_count() / group_voxels / sampled_groups));
+    one_in_ = static_cast<int>(std::max<std::int64_t>(
+        1, scene_.output_grid.voxel_count() / group_voxels / sampled_groups));
     simt::LaunchObserver::current() = &counter_;
   }
   WorkloadCounts(const WorkloadCounts&) = delete;
@@ -94,8 +95,7 @@ class WorkloadCounts {
 
   void print() {
     std::printf("{\"workload\": \"%s\", \"tets\": %d, \"voxels\": %lld,\n", workload_.name.c_str(),
-                workload_.tet_count(),
-                static_cast<long long>(scene_.output_grid.voxel_count()));
+                workload_.tet_count(), static_cast<long long>(scene_.output_grid.voxel_count()));
     Warper warper(std::span(&source_, 1), scene_.mesh,
                   {.output_grid = scene_.output_grid, .backend = Backend::cuda});
     const std::array poses{scene_.deformed, nudged_center(scene_.deformed, 1.0)};

@@ -81,7 +81,8 @@ class LaunchCounterTest : public ::testing::Test {
 
 TEST_F(LaunchCounterTest, SectorsOfStridesAreThoseThatHoldTheirBytes) {
   const DeviceInts in(32 * 32), out(32);
-  for (const auto& [stride, sectors] : {std::pair{0, 1}, {1, 4}, {2, 8}, {4, 16}, {8, 32}, {32, 32}}) {
+  for (const auto& [stride, sectors] :
+       {std::pair{0, 1}, {1, 4}, {2, 8}, {4, 16}, {8, 32}, {32, 32}}) {
     const LaunchCounts counts = counts_of(strided_copy_kernel, 1, 32, in.data, out.data, stride);
 
     EXPECT_EQ(counts.requests, 2) << stride;

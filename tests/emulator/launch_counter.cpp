@@ -113,14 +113,13 @@ void LaunchCounter::block_ends() {
 void LaunchCounter::launch_ends() {
   const double times = sample_.times * static_cast<double>(now_.blocks) /
                        static_cast<double>(std::max<std::int64_t>(ran_, 1));
-  for (double* const sum :
-       {&now_.operations, &now_.lane_operations, &now_.barriers, &now_.requests, &now_.sectors,
-        &now_.least_sectors}) {
+  for (double* const sum : {&now_.operations, &now_.lane_operations, &now_.barriers, &now_.requests,
+                            &now_.sectors, &now_.least_sectors}) {
     *sum *= times;
   }
   for (std::size_t r = 0; r < ranges_.size(); ++r) {
-    const double touched = times * static_cast<double>(sector) *
-                           static_cast<double>(range_sectors_[r]);
+    const double touched =
+        times * static_cast<double>(sector) * static_cast<double>(range_sectors_[r]);
     now_.block_bytes += touched;
     now_.bytes += std::min(touched, static_cast<double>(ranges_[r].second - ranges_[r].first));
   }
@@ -171,8 +170,8 @@ void LaunchCounter::count_request(const Request& request) {
   std::array<std::uintptr_t, 32> addresses = request.addresses;
   const auto end = addresses.begin() + static_cast<std::ptrdiff_t>(request.count);
   std::sort(addresses.begin(), end);
-  const auto different = static_cast<std::size_t>(std::unique(addresses.begin(), end) -
-                                                  addresses.begin());
+  const auto different =
+      static_cast<std::size_t>(std::unique(addresses.begin(), end) - addresses.begin());
   std::size_t sectors = 0;
   std::uintptr_t next = 0;  // sectors before it are counted
   for (std::size_t a = 0; a < different; ++a) {
@@ -193,9 +192,8 @@ int LaunchCounter::range_of(std::uintptr_t address) {
     return address >= ranges_[range].first && address < ranges_[range].second;
   };
   if (last_range_ < ranges_.size() && holds(last_range_)) return static_cast<int>(last_range_);
-  const auto after = std::ranges::upper_bound(ranges_, address, {}, [](const auto& range) {
-    return range.first;
-  });
+  const auto after =
+      std::ranges::upper_bound(ranges_, address, {}, [](const auto& range) { return range.first; });
   if (after == ranges_.begin()) return -1;
   const auto range = static_cast<std::size_t>(after - ranges_.begin()) - 1;
   if (!holds(range)) return -1;

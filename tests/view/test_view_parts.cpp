@@ -138,8 +138,8 @@ TEST(Pick, FindsTheNearestTriangleFromEitherSide) {
   ASSERT_TRUE(from_below);
   EXPECT_EQ(from_below->body, 0u);
   EXPECT_FALSE(pick(points, triangles, {0.8, 0.8, 5}, {0, 0, -1}));
-  EXPECT_FALSE(pick(points, triangles, {0.2, 0.3, 5}, {0, 0, 1}));   // behind
-  EXPECT_FALSE(pick(points, triangles, {0.2, 0.3, 5}, {1, 0, 0}));   // along the triangles
+  EXPECT_FALSE(pick(points, triangles, {0.2, 0.3, 5}, {0, 0, 1}));  // behind
+  EXPECT_FALSE(pick(points, triangles, {0.2, 0.3, 5}, {1, 0, 0}));  // along the triangles
 }
 
 TEST(GridAround, HoldsThePointsAndTheLimit) {
