@@ -15,8 +15,8 @@ tetwarp_sources(tetwarp_command host/cli/simulate
   simulate_run.cpp simulate_series.cpp simulate_warp.cpp)
 tetwarp_sources(tetwarp_command host/cli/tools
   cmd_compose.cpp cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp
-  cmd_invert.cpp cmd_mesh.cpp cmd_points.cpp cmd_render.cpp displacement.cpp read_array.cpp
-  transform_chain.cpp)
+  cmd_invert.cpp cmd_mesh.cpp cmd_points.cpp cmd_render.cpp displacement.cpp mesh_options.cpp
+  read_array.cpp transform_chain.cpp)
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp

@@ -16,6 +16,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_bad_files.cpp
     tests/io/test_mesh_arrays.cpp
     tests/io/test_mesh_import.cpp
+    tests/io/test_numbered_files.cpp
     tests/io/test_contact_certified.cpp
     tests/io/test_contact_reference_certified.cpp
     tests/io/test_io_checkpoint.cpp

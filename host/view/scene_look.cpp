@@ -106,6 +106,7 @@ SceneDrawing drawing_of(const Simulator& simulator) {
 }
 
 Camera scene_camera(const Simulator& simulator, double aspect) {
+  if (simulator.scene().camera) return *simulator.scene().camera;
   const SceneDrawing drawn = drawing_of(simulator);
   std::vector<Point3> points;
   Box box;

@@ -28,7 +28,7 @@ struct SceneDrawing {
 /// The state of a simulator, which must outlive the drawing.
 SceneDrawing drawing_of(const Simulator& simulator);
 
-/// A camera that shows the whole scene, and where it will be if it falls.
+/// The camera of a scene, or one that shows the whole scene, and where it will be if it falls.
 /// @param aspect  width over height of the picture
 Camera scene_camera(const Simulator& simulator, double aspect);
 

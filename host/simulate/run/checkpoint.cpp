@@ -79,7 +79,7 @@ void check_head(std::span<const std::byte> bytes,
                 std::uint64_t of_scene,
                 CheckpointReader& reader) {
   std::uint64_t version = 0, fingerprint = 0;
-  reader.read(version);
+  reader(version);
   if (version != checkpoint_version) {
     throw std::invalid_argument(
         version >> 32 == checkpoint_kind >> 32
@@ -91,7 +91,7 @@ void check_head(std::span<const std::byte> bytes,
     throw std::invalid_argument(
         "checkpoint: damaged or incomplete, its checksum is another; use an earlier one");
   }
-  reader.read(fingerprint);
+  reader(fingerprint);
   if (fingerprint != of_scene) {
     throw std::invalid_argument(
         "checkpoint: it belongs to another scene; restart the scene that wrote it, unchanged");
@@ -123,7 +123,7 @@ void read_added(CheckpointReader& reader, const SimulatedScene& scene, Simulatio
 
 void check_end(CheckpointReader& reader, const SimulationState& state) {
   std::uint64_t checksum = 0;
-  reader.read(checksum);
+  reader(checksum);
   if (!reader.is_at_end() || state.steps < 0) {
     throw std::invalid_argument("checkpoint: damaged, it is longer than the state of its scene");
   }
@@ -143,11 +143,11 @@ void check_numbers(const SimulationState& state) {
 
 std::vector<std::byte> write_checkpoint(std::uint64_t fingerprint, const SimulationState& state) {
   CheckpointWriter writer;
-  writer.add(checkpoint_version);
-  writer.add(fingerprint);
+  writer(checkpoint_version);
+  writer(fingerprint);
   pass_added(writer, state.added);
   write_state(state, writer);
-  writer.add(checksum_of(writer.bytes()));
+  writer(checksum_of(writer.bytes()));
   return writer.take();
 }
 
