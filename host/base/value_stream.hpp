@@ -140,7 +140,7 @@ class ValueReader {
     constexpr std::uint64_t first_part = 1 << 16;
     std::uint64_t all = 0;
     read(all);
-    self().check_length(all, items.size());
+    if constexpr (!std::is_same_v<Items, std::string>) self().check_length(all, items.size());
     self().check_count(all, sizeof items[0]);
     items.clear();
     for (std::uint64_t done = 0; done < all; done = items.size()) {
