@@ -8,6 +8,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/warp/cell_raster_stage.hpp"
 #include "host/warp/counter_totals.hpp"
+#include "host/warp/extension.hpp"
 #include "host/warp/fields.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/outputs.hpp"
@@ -40,6 +41,7 @@ class WarpPipeline : public WarpBackend {
         sources_(exec_, plan_),
         totals_(exec_, plan_, geometry_),
         roundings_(exec_, plan_, geometry_),
+        extension_(exec_, plan_, geometry_),
         counter_totals_(exec_, geometry_.frame.cell_count()) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
@@ -158,7 +160,9 @@ class WarpPipeline : public WarpBackend {
     pairs_.run(positions);
     transforms_.run(pairs_);
     stale_ = {};
-    if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
+    // Voxels outside depend on the whole surface.
+    if (age > 0 && !extension_.is_requested() && pairs_.are_updates(age))
+      stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
     const WarpTarget extra = outputs_.extra(target);
     const StepShares shares(plan_, extra.fields);
@@ -168,6 +172,7 @@ class WarpPipeline : public WarpBackend {
     const View<std::int32_t> owners{extra.owner,
                                     extra.owner != nullptr ? geometry_.frame.voxel_count() : 0};
     fields_.run(pairs_, owners, stale_, extra.fields);
+    if (extension_.is_requested()) extend(target, owners, extra.fields.displacement);
     voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
   }
 
@@ -185,6 +190,30 @@ class WarpPipeline : public WarpBackend {
     count(pairs_.nodes(), pairs_.list(), 1);
   }
 
+  /// Voxels that no tetrahedron covers, of all sources.
+  void extend(const WarpTarget& target, View<const std::int32_t> owners, float* displacement) {
+    extension_.run(pairs_);
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
+        RasterJob<T> job{};
+        set_samples(s, outputs_.volume(s, target), job);
+        extension_.write(job, owners, s == 0 ? displacement : nullptr);
+      });
+    }
+  }
+
+  /// What stages need to sample source s.
+  template <class T>
+  void set_samples(std::size_t s, void* volume, RasterJob<T>& job) {
+    job.frame = geometry_.frame;
+    job.source = sources_.template view<T>(s);
+    job.filter = plan_.options.filter;
+    job.outside = geometry_.outside;
+    job.background = rounded_to<T>(plan_.options.background);
+    job.copy_whole_shifts = plan_.options.expert.skip.copied_voxels;
+    job.volume = static_cast<T*>(volume);
+  }
+
   /// Owners and samples of source s.
   /// @param volume, extra  where the executor writes samples, and with source 0 mask and owners
   void raster(std::size_t s, void* volume, const WarpTarget& extra, const ProgressPart& part) {
@@ -199,13 +228,7 @@ class WarpPipeline : public WarpBackend {
       job.pairs = pairs_.list().pairs;
       job.ranges = {pairs_.list().ranges.data, frame.cell_count()};
       job.usual_pairs = pairs_.usual_pairs();
-      job.frame = frame;
-      job.source = sources_.template view<T>(s);
-      job.filter = plan_.options.filter;
-      job.outside = geometry_.outside;
-      job.background = rounded_to<T>(plan_.options.background);
-      job.copy_whole_shifts = plan_.options.expert.skip.copied_voxels;
-      job.volume = static_cast<T*>(volume);
+      set_samples(s, volume, job);
       // Mask, owners and counts are the same for all sources.
       job.mask = s == 0 ? extra.mask : nullptr;
       job.tet = s == 0 ? extra.owner : nullptr;
@@ -296,6 +319,7 @@ class WarpPipeline : public WarpBackend {
   WarpSources<Exec> sources_;
   WarpTotals<Exec> totals_;
   WarpRoundings<Exec> roundings_;
+  WarpExtension<Exec> extension_;
   CounterTotals<Exec> counter_totals_;
   CellRaster<Exec> cell_raster_;
   Flight flights_[2];

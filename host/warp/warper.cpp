@@ -52,6 +52,11 @@ void check_window(const std::vector<VolumeView>& sources, const WarpOptions& opt
   if (options.intensity == Intensity::conservative) {
     throw std::invalid_argument("source window: conservative needs the whole source; use density");
   }
+  if (extends(options.outside)) {
+    throw std::invalid_argument(
+        std::string("source window: outside ") + name_of(options.outside) +
+        " takes displacements from the whole mesh; use background or identity");
+  }
   if (options.overshoot == Overshoot::clamp) check_ranges(sources, options.source_window->ranges);
 }
 

@@ -57,6 +57,17 @@ SceneOutput read_output(const SceneValue& value) {
   return output;
 }
 
+Camera read_camera(const SceneValue& value) {
+  SceneObject object(value);
+  Camera camera;
+  camera.eye = object.get("eye", "the place of the camera [x, y, z]").point();
+  camera.target = object.get("target", "the place in the middle of the picture").point();
+  object.read("up", camera.up);
+  object.read("angle", camera.angle);
+  object.finish();
+  return camera;
+}
+
 void read_bodies(SceneObject& object, SceneFiles& files, Scene& scene) {
   const SurfaceContact& contact = scene.contact.material;
   const std::vector<SceneValue> bodies = object.get("bodies", "a list of bodies").items();
@@ -116,6 +127,7 @@ Scene read_keys(const SceneValue& value, SceneFiles& files) {
   read_list(object, "loads", read_load, scene.loads);
   if (const auto solver = object.find("solver")) scene.solver = read_solver(*solver);
   if (const auto output = object.find("output")) scene.output = read_output(*output);
+  if (const auto camera = object.find("camera")) scene.camera = read_camera(*camera);
   object.finish();
   return scene;
 }

@@ -144,9 +144,9 @@ TETWARP_HD_RARE Vec3 hex_motion(const MovedNodes& nodes,
     while (a < 7 && hex[a] != tet[n]) ++a;
     for (int axis = 0; axis < 3; ++axis) u[axis] += weights.of[n] * unit_corner(a, axis);
   }
-  invert_hex(from, target, u);
+  invert_hex(hex_terms(from), target, u);
   Matrix3 gradient;
-  map_hex(motion, u, mean, gradient);
+  map_hex(hex_terms(motion), u, mean, gradient);
   return vec3_of(mean);
 }
 

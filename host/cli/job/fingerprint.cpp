@@ -73,6 +73,7 @@ void Fingerprint::add(const WarpOptions& options) {
   add(options.intensity);
   add(options.quantities);
   add(options.outside);
+  add(options.falloff);
   add(options.background);
   add(*options.output_grid);
 }

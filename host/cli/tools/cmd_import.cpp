@@ -107,11 +107,13 @@ void add_import_command(CLI::App& app, Run& run) {
       "  tetwarp import brain.nii.gz -o brain.vtkhdf\n"
       "  tetwarp import skull.msh -o skull.vtkhdf --displacement u\n");
   command
-      ->add_option("FILE", arguments->input,
-                   "image, .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd; or mesh of tetrahedra "
-                   "and hexahedra: "
-                   "Gmsh's .msh 2 and 4, "
-                   "VTK's .vtu and .vtk")
+      ->add_option(
+          "FILE", arguments->input,
+          "image, .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd; or mesh of tetrahedra "
+          "and hexahedra: "
+          "Gmsh's .msh 2 and 4, "
+          "VTK's .vtu, .vtk, .vtm, .pvd and .series, Exodus' .e and .exo; '*' in a name for "
+          "numbered files")
       ->required()
       ->type_name("");
   command->add_option("-o,--output", arguments->output, "volume or mesh to write")
