@@ -163,8 +163,8 @@ class Device {
 
   /// @returns memory filled with 0xcd, aligned as that of a device
   void* allocate(std::size_t size, bool is_pinned) {
-    std::unique_ptr<std::byte[], Free> memory(
-        new (std::align_val_t{alignment}) std::byte[std::max<std::size_t>(size, 1)]);
+    std::unique_ptr<std::byte[], Free> memory(new (std::align_val_t{alignment})
+                                                  std::byte[std::max<std::size_t>(size, 1)]);
     std::memset(memory.get(), 0xcd, size);
     std::byte* const data = memory.get();
     memory_[data] = {std::move(memory), size, is_pinned};

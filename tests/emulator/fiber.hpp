@@ -86,7 +86,6 @@ class Fiber {
   }
 
  private:
-
   struct StackRange {
     const void* bottom = nullptr;
     std::size_t size = 0;
