@@ -16,6 +16,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_bad_files.cpp
     tests/io/test_mesh_arrays.cpp
     tests/io/test_mesh_import.cpp
+    tests/io/test_numbered_files.cpp
     tests/io/test_contact_certified.cpp
     tests/io/test_contact_reference_certified.cpp
     tests/io/test_io_checkpoint.cpp
@@ -83,6 +84,15 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
     LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+endif()
+
+# ---- live windows -------------------------------------------------------------------------------
+tetwarp_add_tests(tetwarp_view_tests LIBRARIES tetwarp_view_parts SOURCES tests/view/test_view_parts.cpp)
+tetwarp_discover(tetwarp_view_tests unit)
+if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
+  add_test(NAME window COMMAND ${TETWARP_PYTHON3} -B
+    ${PROJECT_SOURCE_DIR}/tests/view/check_window.py $<TARGET_FILE:tetwarp_command>)
+  set_tests_properties(window PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
 endif()
 
 include(cmake/DocTests.cmake)

@@ -58,16 +58,18 @@ function(tetwarp_add_tests program)
   endif()
 endfunction()
 
-# tetwarp_discover(PROGRAM LABEL): all tests of a program carry the same label. Where they run on
-# a device, those named after back end cuda run one at a time.
+# tetwarp_discover(PROGRAM LABEL): all tests of a program carry the same label, except those of suites
+# named Long..., which have that label. Where they run on a device, those named after back end cuda
+# run one at a time.
 function(tetwarp_discover program label)
-  set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT 300 LABELS ${label})
+  set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES PROPERTIES TIMEOUT 300 LABELS)
+  gtest_discover_tests(${program} TEST_FILTER "Long*" ${options} long)
   if(tetwarp_device_tests)
-    gtest_discover_tests(${program} TEST_FILTER "-*/cuda*:*_cuda" ${options})
-    gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda" ${options} RESOURCE_LOCK gpu)
+    gtest_discover_tests(${program} TEST_FILTER "-Long*:*/cuda*:*_cuda" ${options} ${label})
+    gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda:-Long*" ${options} ${label}
+      RESOURCE_LOCK gpu)
   else()
-    gtest_discover_tests(${program} ${options})
+    gtest_discover_tests(${program} TEST_FILTER "-Long*" ${options} ${label})
   endif()
 endfunction()
 
@@ -158,6 +160,7 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_reference_tests SOURCES
     tests/warp/test_coverage.cpp
+    tests/warp/test_warp_operator.cpp
     tests/warp/test_warp_values.cpp)
   tetwarp_discover(tetwarp_reference_tests reference)
 
@@ -276,7 +279,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_parity.cpp
     tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
     tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp
-    tests/warp/test_warp_intensity.cpp tests/warp/test_warp_quantities.cpp
+    tests/warp/test_warp_intensity.cpp tests/warp/test_warp_outside.cpp
+    tests/warp/test_warp_quantities.cpp
     tests/warp/test_warp_rounding.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
   set_target_properties(tetwarp_backend_tests PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 5)
@@ -322,9 +326,9 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks choices contact contact_adhesion contact_arrays
+set(tetwarp_public_headers backend blocks camera choices contact contact_adhesion contact_arrays
   contact_problem contact_tracker error make map_points mesh names page_lock report resample scene
-  scene_parts simulate tetwarp version volume warp)
+  scene_parts simulate tetwarp version volume warp warp_operator)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers contact_io io mesh_import point_file scene_io transform_file)
 endif()
