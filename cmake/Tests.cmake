@@ -245,6 +245,13 @@ if(NOT BUILD_SHARED_LIBS)
   # to the instructions that have most in common with a device's.
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     find_package(fmt REQUIRED)
+    add_library(tetwarp_counted INTERFACE)  # linked last: its options come after all others
+    target_compile_options(tetwarp_counted INTERFACE -O3 -g1 -march=x86-64-v3 -ffp-contract=fast
+      --param=max-completely-peeled-insns=1000 -fno-tree-vectorize -fno-tree-slp-vectorize
+      -fsanitize-coverage=trace-pc -fsanitize=kernel-address -U__SANITIZE_ADDRESS__
+      --param=asan-instrumentation-with-call-threshold=0 --param=asan-stack=0
+      --param=asan-globals=0)
+    target_link_options(tetwarp_counted INTERFACE -no-pie)
     add_library(tetwarp_launch_counter OBJECT tests/emulator/launch_counter.cpp)
     tetwarp_test_target(tetwarp_launch_counter)
     add_library(tetwarp_workloads OBJECT EXCLUDE_FROM_ALL bench/measure/floors.cpp
@@ -258,11 +265,7 @@ if(NOT BUILD_SHARED_LIBS)
       $<TARGET_OBJECTS:tetwarp_launch_counter> $<TARGET_OBJECTS:tetwarp_workloads>)
     set_target_properties(tetwarp_step_counts PROPERTIES EXCLUDE_FROM_ALL ON)
     foreach(program tetwarp_count_tests tetwarp_step_counts)
-      target_compile_options(${program} PRIVATE -O2 -g1 -march=x86-64-v3 -ffp-contract=fast
-        -fno-tree-vectorize -fno-tree-slp-vectorize -fsanitize-coverage=trace-pc
-        -fsanitize=kernel-address -U__SANITIZE_ADDRESS__ --param=asan-stack=0
-        --param=asan-globals=0 --param=asan-instrumentation-with-call-threshold=0)
-      target_link_options(${program} PRIVATE -no-pie)
+      target_link_libraries(${program} PRIVATE tetwarp_counted)
       set_target_properties(${program} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
     endforeach()
     tetwarp_discover(tetwarp_count_tests simt)

@@ -12,7 +12,7 @@ import bisect
 import re
 import subprocess
 
-COUNTER = "<__sanitizer_cov_trace_pc"
+COUNTER, ACCESS = "<__sanitizer_cov_trace_pc", "<__asan_"
 FREE = ("push", "pop", "ret", "nop", "jmp", "call", "endbr", "vzero", "leave", "cs", "data16",
         "xchg", "lock", "mov", "vmov", "hlt", "ud2")
 INSTRUCTION = re.compile(r"^\s*([0-9a-f]+):\t(?:rep[nz]* |notrack |bnd )*(\S+)\s*([^#]*)")
@@ -69,9 +69,11 @@ class Lines:
 
 
 def weights_of(text, is_kernel):
-    """Address -> operations. text: what objdump -d prints; is_kernel(address)."""
+    """Address to which a call of the counter returns -> operations: of the basic block, 1 of an
+    access. text: what objdump -d prints; is_kernel(address)."""
     weights, block = {}, None
-    is_start = False
+    is_start = is_access = False
+    argument = 0  # weight of what sets the argument of the next call
     for line in text.splitlines():
         if line.endswith(">:"):
             block = None
@@ -79,10 +81,20 @@ def weights_of(text, is_kernel):
         if not found:
             continue
         address, operation, operands = int(found[1], 16), found[2], found[3].strip()
+        if is_access and is_kernel(address):
+            weights[address] = 1
         if is_start:
             block = address
             weights[block] = 0
+        is_access = operation.startswith("call") and ACCESS in operands
         is_start = operation.startswith("call") and COUNTER in operands
-        if block is not None and not is_start and is_kernel(address):
-            weights[block] += weight_of(operation, operands)
+        if block is None or is_start or not is_kernel(address):
+            continue
+        weight = weight_of(operation, operands)
+        weights[block] += weight
+        if operands.endswith("%rdi"):
+            argument = weight
+        elif is_access:
+            weights[block] -= argument
+            argument = 0
     return weights

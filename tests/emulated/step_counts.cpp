@@ -36,7 +36,7 @@ namespace tetwarp::bench {
 namespace {
 using simt::LaunchCounter, simt::LaunchCounts, simt::LaunchSample;
 
-constexpr std::int64_t sampled_groups = 400;  ///< blocks of the raster that run, about
+constexpr std::int64_t counted_blocks = 400;
 
 /// Arrays in memory of the emulated device.
 class DeviceBytes {
@@ -63,13 +63,18 @@ bool has(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Kernels whose results later launches do not depend on are sampled.
-LaunchSample sample_of(const std::string& kernel, int one_in) {
-  if (has(kernel, "AffineDeviceJob")) return {4 * one_in, 1};
-  if (has(kernel, "PackSource")) return {1 << 20, 1};
-  if (!has(kernel, "RasterJob")) return {};
-  const bool is_listed = has(kernel, "RasterJobIfEE");  // no other argument: cells that groups list
-  return is_listed ? LaunchSample{1, static_cast<double>(one_in)} : LaunchSample{one_in, 1};
+/// Of the kernels of a step: which blocks are counted, about `counted_blocks` of each launch.
+LaunchSample sample_of(const std::string& kernel, std::int64_t blocks, std::int64_t groups) {
+  const auto one_in = [](std::int64_t all) {
+    return std::max<std::int64_t>(1, all / counted_blocks);
+  };
+  // Nothing that a step decides depends on samples.
+  if (has(kernel, "PackSource")) return {blocks, false};
+  if (has(kernel, "AffineDeviceJob")) return {one_in(blocks), false};
+  // The other kernel of the raster has one argument, and computes the cells that groups list.
+  if (has(kernel, "RasterJobIfEEi")) return {one_in(blocks), false};
+  if (has(kernel, "RasterJob")) return {1, true, static_cast<double>(one_in(groups))};
+  return {one_in(blocks)};
 }
 
 /// Counts steps of one workload, and its floor.
@@ -83,10 +88,10 @@ class WorkloadCounts {
         counter_(
             weights,
             [] { return simt::Device::only().ranges(); },
-            [this](const std::string& kernel) { return sample_of(kernel, one_in_); }) {
-    constexpr std::int64_t group_voxels = 4 * 512;
-    one_in_ = static_cast<int>(std::max<std::int64_t>(
-        1, scene_.output_grid.voxel_count() / group_voxels / sampled_groups));
+            [this](const std::string& kernel, std::int64_t blocks) {
+              if (has(kernel, "RasterJobIfEEi")) groups_ = blocks;
+              return sample_of(kernel, blocks, groups_);
+            }) {
     simt::LaunchObserver::current() = &counter_;
   }
   WorkloadCounts(const WorkloadCounts&) = delete;
@@ -161,7 +166,7 @@ class WorkloadCounts {
   const scenes::Scene& scene_;
   VolumeView source_;
   DeviceBytes output_;
-  int one_in_ = 1;
+  std::int64_t groups_ = 1;  ///< blocks of the last raster of groups
   LaunchCounter counter_;
 };
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "kernels/exec/launch.hpp"
-#include "tests/emulated/simt_kernels.cuh"
 #include "tests/emulator/launch_counter.hpp"
 
 namespace tetwarp {
@@ -71,7 +70,7 @@ class LaunchCounterTest : public ::testing::Test {
       LaunchSample sample, Kernel* kernel, dim3 grid, dim3 block, const Args&... args) {
     LaunchCounter counter(
         {}, [] { return simt::Device::only().ranges(); },
-        [=](const std::string&) { return sample; });
+        [=](const std::string&, std::int64_t) { return sample; });
     simt::LaunchObserver::current() = &counter;
     launch(nullptr, kernel, grid, block, 0, args...);
     simt::LaunchObserver::current() = nullptr;
@@ -148,17 +147,25 @@ TEST_F(LaunchCounterTest, BarriersCountOncePerBlock) {
 
 TEST_F(LaunchCounterTest, ASampleOfEqualBlocksCountsAsAllOfThem) {
   const DeviceInts in(32 * 96), out(32 * 96);
-  const LaunchCounts all = counts_of(strided_copy_kernel, 96, 32, in.data, out.data, 1);
+  std::fill_n(in.data, 32 * 96, 1);
+  const auto counts_with = [&](LaunchSample sample) {
+    std::fill_n(out.data, 32 * 96, 0);
+    return counts_of(sample, strided_copy_kernel, 96, 32, in.data, out.data, 1);
+  };
+  const LaunchCounts all = counts_with({});
 
-  const LaunchCounts some =
-      counts_of(LaunchSample{8, 1}, strided_copy_kernel, 96, 32, in.data, out.data, 1);
-  const LaunchCounts twice =
-      counts_of(LaunchSample{1, 2}, strided_copy_kernel, 96, 32, in.data, out.data, 1);
+  const LaunchCounts some = counts_with({8});
+  EXPECT_TRUE(std::equal(in.data, in.data + 32 * 96, out.data));
+  const LaunchCounts alone = counts_with({32, false});
+  EXPECT_EQ(std::count(out.data, out.data + 32 * 96, 1), 3 * 32);
+  const LaunchCounts twice = counts_with({1, true, 2});
 
-  EXPECT_EQ(some.sectors, all.sectors);
-  EXPECT_EQ(some.operations, all.operations);
-  EXPECT_EQ(some.bytes, all.bytes);
-  EXPECT_EQ(some.blocks, 96);
+  for (const LaunchCounts& counts : {some, alone}) {
+    EXPECT_EQ(counts.sectors, all.sectors);
+    EXPECT_EQ(counts.operations, all.operations);
+    EXPECT_EQ(counts.bytes, all.bytes);
+    EXPECT_EQ(counts.blocks, 96);
+  }
   EXPECT_EQ(twice.operations, 2 * all.operations);
 }
 

@@ -200,7 +200,7 @@ class Block {
         if (fault_) std::rethrow_exception(fault_);
       }
       if (observer != nullptr) observer->warp_paused(first);
-    } while (complete_exchange(first, lane_count));
+    } while (complete_exchanges(first, lane_count));
   }
 
   void wait(State state, int line) {
@@ -226,7 +226,13 @@ class Block {
     wait(State::at_exchange, line);
   }
 
-  /// Completes one exchange that all its lanes have reached. @returns whether there was one
+  /// Completes the exchanges that all their lanes have reached. @returns whether there was one
+  bool complete_exchanges(unsigned first, unsigned lane_count) {
+    bool is_any = false;
+    while (complete_exchange(first, lane_count)) is_any = true;
+    return is_any;
+  }
+  /// Completes one of them.
   bool complete_exchange(unsigned first, unsigned lane_count) {
     for (unsigned lane = 0; lane < lane_count; ++lane) {
       const Thread& waiting = *threads_[first + lane];

@@ -21,9 +21,7 @@ std::uintptr_t past_code() {
 }
 }  // namespace
 
-LaunchCounter::LaunchCounter(Weights weights,
-                             std::function<Ranges()> ranges,
-                             std::function<LaunchSample(const std::string&)> sample)
+LaunchCounter::LaunchCounter(Weights weights, std::function<Ranges()> ranges, SampleOf sample)
     : weights_(std::move(weights)),
       find_ranges_(std::move(ranges)),
       find_sample_(std::move(sample)),
@@ -43,8 +41,8 @@ void LaunchCounter::launch_begins(const std::string& kernel,
   now_.kernel = kernel;
   now_.blocks = blocks;
   now_.threads = threads;
-  sample_ = find_sample_(kernel);
-  ran_ = 0;
+  sample_ = find_sample_(kernel, blocks);
+  counted_ = 0;
   ranges_ = find_ranges_();
   range_sectors_.assign(ranges_.size(), 0);
   last_range_ = 0;
@@ -54,16 +52,18 @@ void LaunchCounter::launch_begins(const std::string& kernel,
 /// One of each `one_in` successive blocks, of which some may be missing at the end.
 bool LaunchCounter::runs(std::int64_t block) {
   const std::int64_t group = block / sample_.one_in;
-  const double place = unit_of(static_cast<std::uint64_t>(group)) * sample_.one_in;
+  const double place =
+      unit_of(static_cast<std::uint64_t>(group)) * static_cast<double>(sample_.one_in);
   const bool is_chosen = block % sample_.one_in == static_cast<std::int64_t>(place);
-  if (is_chosen) ++ran_;
-  return is_chosen;
+  is_counted_ = counts && is_chosen;
+  counted_ += is_chosen ? 1 : 0;
+  return is_chosen || sample_.runs_others;
 }
 
 void LaunchCounter::lane_begins(const void* stack, std::size_t size) {
   stack_ = reinterpret_cast<std::uintptr_t>(stack);
   stack_size_ = size;
-  if (counts) running = this;
+  if (is_counted_) running = this;
 }
 
 void LaunchCounter::lane_ends() {
@@ -78,7 +78,7 @@ void LaunchCounter::lane_ends() {
 }
 
 void LaunchCounter::warp_paused(unsigned first) {
-  if (!counts) return;
+  if (!is_counted_) return;
   double operations = 1;  // the synchronization itself, or the end
   for (Point* const point : of_warp_) {
     operations += point->weight * point->most;
@@ -112,7 +112,7 @@ void LaunchCounter::block_ends() {
 
 void LaunchCounter::launch_ends() {
   const double times = sample_.times * static_cast<double>(now_.blocks) /
-                       static_cast<double>(std::max<std::int64_t>(ran_, 1));
+                       static_cast<double>(std::max<std::int64_t>(counted_, 1));
   for (double* const sum : {&now_.operations, &now_.lane_operations, &now_.barriers, &now_.requests,
                             &now_.sectors, &now_.least_sectors}) {
     *sum *= times;
@@ -127,13 +127,13 @@ void LaunchCounter::launch_ends() {
 }
 
 void LaunchCounter::visit(std::uintptr_t from) {
-  count_visit(point(from, false));
+  count_visit(point(from));
 }
 
 void LaunchCounter::access(std::uintptr_t from, std::uintptr_t address, std::size_t size) {
   const bool is_on_device = range_of(address) >= 0;
   if (!is_on_device && address - stack_ < stack_size_) return;
-  Point& here = point(from, true);
+  Point& here = point(from);
   if (is_on_device) add_to_request(here, address, size);
   count_visit(here);
 }
@@ -150,14 +150,14 @@ void LaunchCounter::add_to_request(Point& point, std::uintptr_t address, std::si
   request.addresses[request.count++] = address;
 }
 
-LaunchCounter::Point& LaunchCounter::point(std::uintptr_t from, bool is_access) {
+LaunchCounter::Point& LaunchCounter::point(std::uintptr_t from) {
   int& number = numbers_[from - first_code()];
   if (number == 0) {
     number = static_cast<int>(points_.size());
     points_.emplace_back();
     const auto known = weights_.find(from);
     const double weight = known != weights_.end() ? known->second : weights_.empty() ? 1.0 : 0.0;
-    points_.back().weight = is_access ? 1.0 : weight;
+    points_.back().weight = weight;
   }
   return points_[static_cast<std::size_t>(number)];
 }

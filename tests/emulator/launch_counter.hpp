@@ -37,10 +37,11 @@ struct LaunchCounts {
   double bytes = 0;  ///< the same, but of each allocation at most its size
 };
 
-/// One block in `one_in` runs; its counts stand for `times` as many.
+/// Which blocks of a launch are counted.
 struct LaunchSample {
-  int one_in = 1;
-  double times = 1;
+  std::int64_t one_in = 1;  ///< one block in so many
+  bool runs_others = true;  ///< else only the counted ones run
+  double times = 1;         ///< so many launches that the counts stand for
 };
 
 /// Counts while it is LaunchObserver::current().
@@ -49,20 +50,16 @@ class LaunchCounter : public LaunchObserver {
   /// Operations of the basic blocks, by the address to which their call of the counter returns.
   using Weights = std::map<std::uintptr_t, double>;
   using Ranges = std::vector<std::pair<std::uintptr_t, std::uintptr_t>>;
+  using SampleOf = std::function<LaunchSample(const std::string& kernel, std::int64_t blocks)>;
 
   /// @param weights  of basic blocks, 0 for those left out; empty: 1 for every one
   /// @param ranges   returns the allocations of the device, ascending
-  /// @param sample   of a kernel's launches
-  LaunchCounter(
-      Weights weights,
-      std::function<Ranges()> ranges,
-      std::function<LaunchSample(const std::string&)> sample = [](const auto&) {
-        return LaunchSample{};
-      });
+  /// @param sample   of a launch of a kernel with so many blocks
+  LaunchCounter(Weights weights, std::function<Ranges()> ranges, SampleOf sample);
 
   /// The launches since the last call of this function.
   std::vector<LaunchCounts> take();
-  /// Whether to count; if not, the chosen blocks run.
+  /// Whether to count; if not, the same blocks run.
   bool counts = true;
 
   void launch_begins(const std::string& kernel, std::int64_t blocks, std::int64_t threads) override;
@@ -70,7 +67,7 @@ class LaunchCounter : public LaunchObserver {
   void lane_begins(const void* stack, std::size_t size) override;
   void lane_ends() override;
   void warp_paused(unsigned first) override;
-  void barrier_passed() override { ++now_.barriers; }
+  void barrier_passed() override { now_.barriers += is_counted_ ? 1 : 0; }
   void block_ends() override;
   void launch_ends() override;
 
@@ -95,7 +92,7 @@ class LaunchCounter : public LaunchObserver {
     std::size_t count = 0, size = 0;
   };
 
-  Point& point(std::uintptr_t from, bool is_access);
+  Point& point(std::uintptr_t from);
   void add_to_request(Point& point, std::uintptr_t address, std::size_t size);
   void count_visit(Point& point);
   void count_request(const Request& request);
@@ -104,7 +101,7 @@ class LaunchCounter : public LaunchObserver {
 
   Weights weights_;
   std::function<Ranges()> find_ranges_;
-  std::function<LaunchSample(const std::string&)> find_sample_;
+  SampleOf find_sample_;
   std::vector<int> numbers_;  ///< of points, by address of the program; 0: none yet
   std::vector<Point> points_;
   std::vector<Point*> of_lane_, of_warp_;
@@ -118,7 +115,8 @@ class LaunchCounter : public LaunchObserver {
   std::vector<std::int64_t> range_sectors_;
   std::vector<double> warp_operations_;
   LaunchSample sample_;
-  std::int64_t ran_ = 0;
+  std::int64_t counted_ = 0;  ///< blocks
+  bool is_counted_ = false;   ///< the running block is
   LaunchCounts now_;
   std::vector<LaunchCounts> done_;
 };
