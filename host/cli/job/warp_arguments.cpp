@@ -7,7 +7,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/declare.hpp"
 
@@ -230,12 +229,8 @@ void declare_skips(CLI::App& app, SkipOptions& skip) {
 void declare_running(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
   add_choice(app, "--backend", warp.backend, choices_of<Backend>(), "where to compute [auto]");
-  app.add_option("--device", warp.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(app, warp.device);
+  add_threads(app, warp.threads, "threads of the cpu back end, 0 for all cores [0]");
   declare_skips(app, warp.expert.skip);
   add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");

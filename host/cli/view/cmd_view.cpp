@@ -13,7 +13,6 @@
 #include <tetwarp/scene_io.hpp>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
@@ -109,13 +108,9 @@ void declare_simulation(CLI::App& app, view::ViewOptions& options) {
   app.add_option("--backend", options.backend, "where to compute [auto]")
       ->check(CLI::IsMember(words_of(choices_of<Backend>())).description(""))
       ->type_name(CLI::detail::join(words_of(choices_of<Backend>()), "|"));
-  app.add_option("--device", options.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", options.threads,
-                 "threads of the cpu back end, 0 for all cores [0]; any number: same results")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(app, options.device);
+  add_threads(app, options.threads,
+              "threads of the cpu back end, 0 for all cores [0]; any number: same results");
 }
 
 void declare_input(CLI::App& app, view::ViewOptions& options) {
