@@ -100,6 +100,23 @@ void add_quantities(CLI::App& app,
       ->type_name("NAME[=" + CLI::detail::join(words_of(laws), "|") + "]");
 }
 
+/// Sets Outside and its distance from a word, with falloff "falloff:DISTANCE".
+void set_outside(const std::string& text, WarpOptions& warp) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  warp.outside = meaning_of("--outside", text.substr(0, colon), choices_of<Outside>());
+  const bool has_distance = colon < text.size();
+  if (has_distance != (warp.outside == Outside::falloff)) {
+    throw CLI::ValidationError("--outside", has_distance
+                                                ? "only falloff takes a distance"
+                                                : "falloff takes a distance, as in falloff:20");
+  }
+  if (!has_distance) return;
+  const std::string distance = text.substr(colon + 1);
+  if (!CLI::detail::lexical_cast(distance, warp.falloff) || !std::isfinite(warp.falloff) ||
+      !(warp.falloff > 0)) {
+    throw CLI::ValidationError("--outside", "'" + distance + "' is not a distance above 0");
+  }
+}
 }  // namespace
 
 void declare_grid_options(CLI::App& app, GridChoice& grid) {
@@ -129,8 +146,11 @@ void declare_sampling_options(CLI::App& app, WarpOptions& warp) {
 }
 
 void declare_outside_options(CLI::App& app, WarpOptions& warp) {
-  add_choice(app, "--outside", warp.outside, choices_of<Outside>(),
-             "voxels outside the mesh: --background, or the source [background]");
+  app.add_option_function<std::string>(
+         "--outside", [&warp](const std::string& text) { set_outside(text, warp); },
+         "voxels outside the mesh: --background, the source, the source moved as the nearest point "
+         "of the mesh, or so with displacements that fall to 0 over a distance [background]")
+      ->type_name("background|identity|nearest|falloff:DISTANCE");
   app.add_option("--background", warp.background, "value of uncovered voxels [0]")
       ->check(representable_number())
       ->type_name("V");
@@ -138,14 +158,16 @@ void declare_outside_options(CLI::App& app, WarpOptions& warp) {
 
 namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
-  app.add_option("FILES", arguments.files,
-                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage), then the mesh that warps "
-                 "them (VTKHDF, .msh, "
-                 ".vtu, .vtk), or one volume and a displacement field or an affine "
-                 "transform of ITK (.tfm, .txt, .mat)")
+  app.add_option(
+         "FILES", arguments.files,
+         "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage, .mgz), then the mesh that warps "
+         "them (VTKHDF, .msh, "
+         ".vtu, .vtk), or one volume and a displacement field or an affine "
+         "transform of ITK (.tfm, .txt, .mat, .h5)")
       ->type_name("");
-  app.add_option("-o,--output", arguments.output,
-                 "file to write, .vtkhdf, .nii.gz, .nrrd or .mha; for several volumes a folder")
+  app.add_option(
+         "-o,--output", arguments.output,
+         "file to write, .vtkhdf, .nii.gz, .nrrd, .mha, .mhd or .mgz; for several volumes a folder")
       ->type_name("OUT");
   app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
       ->allow_extra_args(false)
@@ -166,6 +188,14 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
       app, arguments.axes,
       "axes of meshes in .msh, .vtu and .vtk and of vectors and tensors in NIfTI images; lps is "
       "turned to ras [ras; of a displacement field what its intent tells]");
+  app.add_option_function<std::string>(
+         "--fsl",
+         [&arguments](const std::string& word) {
+           arguments.fsl = meaning_of("--fsl", word, choices_of<FslWarp>());
+         },
+         "the last file is a warp field of FSL, and what its numbers are [told by its intent and "
+         "its numbers]")
+      ->type_name("relative|absolute");
   app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
   app.add_option("--rest-step", arguments.mesh.rest_step,
@@ -263,9 +293,13 @@ void check_sampling(const WarpOptions& warp) {
   if (warp.intensity == Intensity::conservative && warp.filter != Filter::linear) {
     throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
   }
-  if (warp.intensity == Intensity::conservative && warp.outside == Outside::identity) {
+  if (warp.intensity == Intensity::conservative && warp.outside != Outside::background) {
     throw CLI::ValidationError(
         "--outside", "--intensity conservative keeps the total of the mesh alone; leave it out");
+  }
+  if (warp.intensity == Intensity::density && extends(warp.outside)) {
+    throw CLI::ValidationError("--outside",
+                               "nearest and falloff are for values, not for --intensity density");
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tetwarp/io.hpp>
+#include <tetwarp/transform_file.hpp>
 #include <tetwarp/warp.hpp>
 
 #include "host/cli/job/extra_outputs.hpp"
@@ -25,8 +26,9 @@ struct WarpArguments {
   std::optional<std::int64_t> source_step;  ///< of volume files with several steps
   bool pair = false;                        ///< step n of the mesh warps step n of the volume
   StepSelection steps;
-  MeshReadOptions mesh;      ///< without the axes of `import`
-  std::optional<Axes> axes;  ///< of files that are not VTKHDF
+  MeshReadOptions mesh;        ///< without the axes of `import`
+  std::optional<Axes> axes;    ///< of files that are not VTKHDF
+  std::optional<FslWarp> fsl;  ///< the last file is a warp field of FSL
   GridChoice grid;
   std::map<std::string, Quantity> quantities;  ///< of arrays, by name; others are components
   WarpOptions warp;  ///< without output_grid and quantities, which need the files
@@ -43,6 +45,8 @@ struct WarpArguments {
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
+  /// How to read the last file if it is a transform.
+  TransformReadOptions transform_options() const { return {axes, fsl, files.front()}; }
   Quantity quantity_of(const std::string& array) const {
     const auto found = quantities.find(array);
     return found == quantities.end() ? Quantity::components : found->second;

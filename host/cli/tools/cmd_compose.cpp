@@ -136,9 +136,7 @@ int run_compose(const ComposeArguments& arguments) {
       fmt::print(stderr, "tetwarp: {}: {}\n", names[s], itk_slice_note);
     }
     if (arguments.quiet) continue;
-    const bool inverts = std::any_of(links.begin(), links.end(), [](const ChainLink& link) {
-      return link.is_inverse() && link.affine() == nullptr && link.step_count() == 1;
-    });
+    const bool inverts = std::ranges::any_of(links, &ChainLink::iterates);
     fmt::print(
         "{} transforms on {} x {} x {} voxels{}: {}\n", links.size(), grid.dims[0], grid.dims[1],
         grid.dims[2],
