@@ -3,6 +3,7 @@
 #pragma once
 #include <tetwarp/backend.hpp>
 #include <tetwarp/blocks.hpp>
+#include <tetwarp/certify.hpp>
 #include <tetwarp/choices.hpp>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/contact_analysis.hpp>

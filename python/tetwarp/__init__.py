@@ -5,6 +5,7 @@ Volumes are arrays of shape (z, y, x) or (z, y, x, components) in C order, meshe
 and (m, 4) or (m, 8) cells. See docs/python.md.
 """
 
+from ._certify import Certificate, certify
 from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
 from ._core import Cancelled, CudaError, IoError, available_backends
 from ._core import version as __version__
@@ -26,6 +27,7 @@ from ._warp import Warper, WarpResult, warp
 
 __all__ = [
     "Cancelled",
+    "Certificate",
     "ContactProblem",
     "ContactSolution",
     "ContactSolver",
@@ -47,6 +49,7 @@ __all__ = [
     "Warper",
     "available_backends",
     "boundary_surface",
+    "certify",
     "deform",
     "displacement_field",
     "isosurface",
