@@ -5,6 +5,16 @@ Volumes are arrays of shape (z, y, x) or (z, y, x, components) in C order, meshe
 and (m, 4) or (m, 8) cells. See docs/python.md.
 """
 
+from ._autograd import autograd_warp
+from ._bridges import (
+    mesh_from,
+    to_meshio,
+    to_nibabel,
+    to_pyvista,
+    to_sitk,
+    to_sitk_transform,
+    volume_from,
+)
 from ._certify import Certificate, certify
 from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
 from ._core import Cancelled, CudaError, IoError, available_backends
@@ -47,6 +57,7 @@ __all__ = [
     "WarpOperator",
     "WarpResult",
     "Warper",
+    "autograd_warp",
     "available_backends",
     "boundary_surface",
     "certify",
@@ -55,6 +66,7 @@ __all__ = [
     "isosurface",
     "jacobian_determinant",
     "lattice_mesh",
+    "mesh_from",
     "phantom",
     "rasterize",
     "read",
@@ -63,7 +75,13 @@ __all__ = [
     "shipped_scenes",
     "solve_contacts",
     "strain",
+    "to_meshio",
+    "to_nibabel",
+    "to_pyvista",
+    "to_sitk",
+    "to_sitk_transform",
     "transform_points",
+    "volume_from",
     "warp",
     "write",
 ]
