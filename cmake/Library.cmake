@@ -10,8 +10,8 @@ tetwarp_sources(tetwarp host/base
   backend.cpp error.cpp host_tasks.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp
   repeated_cells.cpp report.cpp volume.cpp)
 tetwarp_sources(tetwarp host/collide
-  body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp
-  self_clearance.cpp touch_areas.cpp)
+  body_partners.cpp certify.cpp collide_items.cpp exact_integer.cpp grid_plan.cpp known_hits.cpp
+  moving_triangles.cpp near_planes.cpp self_clearance.cpp touch_areas.cpp)
 tetwarp_sources(tetwarp host/collide/cpu
   detector_cpu.cpp)
 tetwarp_sources(tetwarp host/collide/cuda
