@@ -87,6 +87,22 @@ void check_outside(const WarpOptions& options) {
 }
 }  // namespace
 
+void check_sources(std::span<const VolumeView> sources, const std::string& what_to_do) {
+  if (sources.empty()) throw std::invalid_argument("sources: no volume");
+  for (const VolumeView& source : sources) {
+    check_grid(source.grid, "source");
+    if (source.grid != sources.front().grid) {
+      throw std::invalid_argument("sources: volumes on different grids; " + what_to_do +
+                                  " them one by one");
+    }
+    if (source.components < 1 || source.components > 9) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, expected 1 to 9");
+    }
+    if (source.data == nullptr) throw std::invalid_argument("source: no samples");
+  }
+}
+
 void check_source_transform(const VolumeView& source,
                             Quantity quantity,
                             const WarpOptions& options) {

@@ -183,9 +183,8 @@ class WarpPipeline : public WarpBackend {
         pairs_.is_update() ? pairs_.touched() : View<const std::uint8_t>{};
     const View<std::int64_t> folded{&pairs_.counters()->mesh.folded, 1};
     const auto count = [&](View<const Node> nodes, const PairList& list, std::int64_t weight) {
-      const VoxelFoldOp body = {pairs_.tets(),   nodes,  list,  touched,
-                                geometry_.frame, folded, weight};
-      exec_.for_each("warp/fold", geometry_.frame.voxel_count(), body);
+      const VoxelFoldOp op = {pairs_.tets(), nodes, list, touched, geometry_.frame, folded, weight};
+      exec_.for_each("warp/fold", geometry_.frame.voxel_count(), op);
     };
     if (pairs_.is_update()) count(pairs_.nodes_before(), pairs_.list_before(), -1);
     count(pairs_.nodes(), pairs_.list(), 1);
@@ -263,37 +262,37 @@ class WarpPipeline : public WarpBackend {
   /// Averages over the voxels' boxes; for the first source after a raster of mask and owners.
   template <class T>
   void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
-    VoxelOverlapOp body = {job.setups,
-                           job.tets,
-                           job.transforms,
-                           pairs_.list(),
-                           job.cell_work,
-                           job.frame,
-                           number_view(job.source.data),
-                           {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
-                           job.source.components,
-                           roundings_.begin(s, job.cell_work, number_view(job.volume))};
+    VoxelOverlapOp op = {job.setups,
+                         job.tets,
+                         job.transforms,
+                         pairs_.list(),
+                         job.cell_work,
+                         job.frame,
+                         number_view(job.source.data),
+                         {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
+                         job.source.components,
+                         roundings_.begin(s, job.cell_work, number_view(job.volume))};
     job.filter = Filter::nearest;
     job.transforms = {};
     constexpr double raster = 0.01;  // of the time of this source
     if (s == 0) cell_raster(exec_, job, part_of(progress, 0, raster));
-    overlap_in_batches(exec_, body, part_of(progress, s == 0 ? raster : 0, 1));
+    overlap_in_batches(exec_, op, part_of(progress, s == 0 ? raster : 0, 1));
     roundings_.sum(s);
   }
 
   /// Finds the cells to keep and the cells to fill with one value; the others are sampled.
   template <class T>
   CellWorkOp<T> work_of_cells(std::size_t s, const RasterJob<T>& job) {
-    CellWorkOp<T> body = {job, {}, stale_, {}, {}};
+    CellWorkOp<T> op = {job, {}, stale_, {}, {}};
     if (plan_.options.expert.skip.constant_cells && job.transforms.size == 0) {
-      body.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
+      op.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
     }
-    if (stale_.size == 0 && body.uniform.reach.size == 0) return body;
-    body.work = cell_work_.view(geometry_.frame.cell_count());
-    body.job.cell_work = {body.work.data, body.work.size};
-    body.constant_count = {pairs_.counters()->spread.constant_cells,
-                           s == 0 ? SpreadCounts::places : 0};
-    return body;
+    if (stale_.size == 0 && op.uniform.reach.size == 0) return op;
+    op.work = cell_work_.view(geometry_.frame.cell_count());
+    op.job.cell_work = {op.work.data, op.work.size};
+    op.constant_count = {pairs_.counters()->spread.constant_cells,
+                         s == 0 ? SpreadCounts::places : 0};
+    return op;
   }
 
   /// Records a computed step for the next one. @returns its report without times

@@ -3,15 +3,13 @@
 #include "io/transforms/itk_transform_files.hpp"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <tetwarp/error.hpp>
 
+#include "io/files/text_file.hpp"
 #include "io/h5/h5.hpp"
 #include "io/h5/h5_read.hpp"
 
@@ -31,13 +29,6 @@ std::vector<double> numbers_in(const std::string& path, const std::string& text)
   return numbers;
 }
 
-std::string whole_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) throw IoError(path, "", std::string("cannot be read: ") + std::strerror(errno));
-  return text;
-}
-
 /// Numbers of a transform under the name of ITK 5 or the misspelled one of ITK 4; none: empty.
 std::vector<double> hdf5_numbers(const h5::Object& group, const char* name, const char* old_name) {
   for (const char* const known : {name, old_name}) {
@@ -48,7 +39,7 @@ std::vector<double> hdf5_numbers(const h5::Object& group, const char* name, cons
 }  // namespace
 
 std::vector<ItkTransform> read_itk_text(const std::string& path) {
-  const std::string text = whole_text(path);
+  const std::string text = read_text(path);
   if (!text.starts_with("#Insight Transform File")) {
     throw IoError(path, "",
                   "is no transform file of ITK, which begins with '#Insight Transform File'; a "
@@ -76,7 +67,7 @@ std::vector<ItkTransform> read_itk_text(const std::string& path) {
 
 /// Level 4 files: for each matrix a head of five numbers, a name, and its entries.
 std::vector<ItkTransform> read_itk_matlab(const std::string& path) {
-  const std::string bytes = whole_text(path);
+  const std::string bytes = read_text(path);
   std::vector<ItkTransform> transforms;
   const auto damaged = [&] {
     return IoError(path, "",

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/declare.hpp"
 
@@ -159,12 +158,10 @@ void declare_outside_options(CLI::App& app, WarpOptions& warp) {
 
 namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
-  app.add_option(
-         "FILES", arguments.files,
-         "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage, .mgz), then the mesh that warps "
-         "them (VTKHDF, .msh, "
-         ".vtu, .vtk), or one volume and a displacement field or an affine "
-         "transform of ITK (.tfm, .txt, .mat, .h5)")
+  app.add_option("FILES", arguments.files,
+                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage, .mgz), then the mesh that "
+                 "warps them (VTKHDF, .msh, .vtu, .vtk, .pvd, .vtm, .exo, 'step_*.vtu'), or one "
+                 "volume and a displacement field or a transform of ITK (.tfm, .txt, .mat, .h5)")
       ->type_name("");
   app.add_option(
          "-o,--output", arguments.output,
@@ -260,12 +257,8 @@ void declare_skips(CLI::App& app, SkipOptions& skip) {
 void declare_running(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
   add_choice(app, "--backend", warp.backend, choices_of<Backend>(), "where to compute [auto]");
-  app.add_option("--device", warp.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(app, warp.device);
+  add_threads(app, warp.threads, "threads of the cpu back end, 0 for all cores [0]");
   declare_skips(app, warp.expert.skip);
   add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
@@ -277,9 +270,16 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--report", arguments.report, "write timings and counts as JSON")
       ->type_name("FILE");
   add_quiet(app, arguments.quiet);
+  app.add_flag("--provenance", arguments.provenance,
+               "write OUT.json beside each output OUT: version, options, and inputs with their "
+               "SHA-256");
   app.add_option("--batch", arguments.batch,
-                 "run the jobs of a JSON file; other options are their defaults")
+                 "run the jobs of a JSON or CSV file; other options are their defaults")
       ->type_name("FILE");
+  app.add_option("--jobs", arguments.jobs,
+                 "jobs of a batch at a time, each a process, as far as memory holds them [1]")
+      ->check(between(1, max_threads))
+      ->type_name("N");
 }
 }  // namespace
 
@@ -313,6 +313,9 @@ void check_complete(const WarpArguments& arguments) {
   if (arguments.pair && arguments.source_step) {
     throw CLI::ValidationError("--pair", "takes all steps of the volume; leave out --source-step");
   }
+  if (arguments.jobs > 1 && arguments.batch.empty()) {
+    throw CLI::ValidationError("--jobs", "is of a --batch; --threads divides one warp");
+  }
   if (!arguments.batch.empty()) {
     if (!arguments.files.empty() || !arguments.output.empty()) {
       throw CLI::ValidationError("--batch",
@@ -326,12 +329,23 @@ void check_complete(const WarpArguments& arguments) {
   if (arguments.output.empty()) throw CLI::ValidationError("-o OUT", "an output is needed");
 }
 
+std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> given;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0 && !option->get_lnames().empty()) {
+      given.emplace_back(option->get_lnames().front(), option->results());
+    }
+  }
+  return given;
+}
+
 WarpArguments parse_warp_arguments(std::vector<std::string> words) {
   WarpArguments arguments;
   CLI::App app;
   declare_warp_options(app, arguments);
   std::reverse(words.begin(), words.end());  // CLI11 expects the last word first
   app.parse(std::move(words));
+  arguments.given = given_options(app);
   check_complete(arguments);
   return arguments;
 }

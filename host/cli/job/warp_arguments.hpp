@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tetwarp/io.hpp>
@@ -42,6 +43,10 @@ struct WarpArguments {
   bool quiet = false;
   std::string report;
   std::string batch;
+  int jobs = 1;             ///< of a batch, processes at a time
+  bool provenance = false;  ///< write a file beside each output of what it was made from
+  /// Options as given, with their values, in the order of the help.
+  std::vector<std::pair<std::string, std::vector<std::string>>> given;
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
@@ -69,6 +74,9 @@ void check_sampling(const WarpOptions& warp);
 /// Throws CLI::ValidationError when volumes, mesh or output are missing, are given with --batch, or
 /// when options contradict each other.
 void check_complete(const WarpArguments& arguments);
+
+/// Options that were given, with their values, without files.
+std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& app);
 
 /// Parses words as those of a command line. Throws CLI::ParseError.
 WarpArguments parse_warp_arguments(std::vector<std::string> words);

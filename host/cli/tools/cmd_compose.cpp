@@ -12,7 +12,6 @@
 #include <tetwarp/io.hpp>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
@@ -184,9 +183,7 @@ void add_compose_command(CLI::App& app, Run& run) {
   add_axes(*command, arguments->axes,
            "axes of meshes in .msh, .vtu and .vtk, and of the components of fields; lps is turned "
            "to ras [ras; of fields what their intent tells]");
-  command->add_option("--threads", arguments->threads, "threads, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_threads(*command, arguments->threads, "threads, 0 for all cores [0]");
   command
       ->add_option("--compress", arguments->compress, "deflate level, 0 for none [0; of .nii.gz 6]")
       ->check(between(0, 9))
