@@ -133,6 +133,19 @@ TEST_F(CliWarnings, NameTotalsThatIntegersDoNotKeep) {
                  "volume.vtkhdf: density: --intensity conservative rounds to whole numbers");
 }
 
+/// Frames of FreeSurfer have numbers in place of times.
+TEST_F(CliWarnings, NameTimesThatAnImageDoesNotHold) {
+  const CommandResult numbered = scene.warp({"-o", "out.mgz", "--temporal"});
+  const CommandResult timed = scene.warp({"-o", "out.nrrd", "--temporal"});
+
+  EXPECT_EQ(numbered.exit_code, 0) << numbered.err;
+  EXPECT_NE(numbered.err.find("out.mgz: images of FreeSurfer number their frames"),
+            std::string::npos)
+      << numbered.err;
+  EXPECT_EQ(timed.err, "");
+  EXPECT_EQ(read_volume_header(scene / "out.nrrd").times, (std::vector<double>{0, 0.5, 1, 1.5}));
+}
+
 TEST_F(CliWarnings, NameTheJobOfABatch) {
   write_mesh(scene / "mesh.vtkhdf", box_mesh());
   write_text(scene / "jobs.json",

@@ -15,6 +15,7 @@
 
 #include "host/base/pixel_dispatch.hpp"
 #include "host/cli/common/declare.hpp"
+#include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -59,7 +60,7 @@ std::string uneven_times(const std::string& output, const std::vector<double>& t
     const double expected = times.front() + mean * static_cast<double>(step);
     if (std::abs(times[step] - expected) <= 1e-3 * std::abs(mean)) continue;
     return fmt::format(
-        "{}: the times of the steps are not equally spaced, NIfTI keeps the mean interval {:g}; "
+        "{}: the times of the steps are not equally spaced, images keep the mean interval {:g}; "
         "write VTKHDF to keep the times",
         output, mean);
   }
@@ -190,6 +191,15 @@ Warnings step_warnings(const std::string& mesh,
 }
 
 std::string times_warning(const std::string& output, const std::vector<double>& times) {
+  if (has_extension(output, ".mgz") || has_extension(output, ".mgh")) {
+    for (std::size_t step = 0; step < times.size(); ++step) {
+      if (times[step] == static_cast<double>(step)) continue;
+      return output +
+             ": images of FreeSurfer number their frames, the times of the steps are lost; write "
+             ".nii.gz, .nrrd or VTKHDF";
+    }
+    return {};
+  }
   const bool keeps_interval = has_nifti_name(output) || has_image_name(output);
   return keeps_interval ? uneven_times(output, times) : unordered_times(output, times);
 }
