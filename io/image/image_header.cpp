@@ -32,12 +32,9 @@ void set_image_steps(double count, double first, double interval, ImageHeader& h
     throw std::invalid_argument("has " + std::to_string(count) + " steps, expected 1 to 2^31");
   }
   header.steps = static_cast<std::int64_t>(count);
-  const double start = std::isfinite(first) ? first : 0;
-  const double between = std::isfinite(interval) && interval > 0 ? interval : 1;
-  header.times.clear();
-  for (std::int64_t step = 0; step < header.steps; ++step) {
-    header.times.push_back(start + static_cast<double>(step) * between);
-  }
+  header.is_series = true;
+  header.first_time = std::isfinite(first) ? first : 0;
+  header.time_step = std::isfinite(interval) && interval > 0 ? interval : 1;
 }
 
 double mean_interval(const std::vector<double>& times) {

@@ -17,8 +17,10 @@ struct ImageHeader {
   PixelType type = PixelType::uint8;
   int components = 1;
   std::int64_t steps = 1;
-  std::vector<double> times = {};  ///< of the steps, in seconds where their unit is known; empty:
-                                   ///< one step, which is no series
+  bool is_series = false;  ///< also with one step
+  double first_time = 0;   ///< of the steps, in seconds where their unit is known
+  double time_step = 1;
+  std::vector<double> times = {};  ///< of a file to write; empty: no series
   std::string data_file;           ///< that holds the samples; may be the header's own
   std::int64_t data_offset = 0;    ///< of the samples; -1: they are the last bytes of the file
   bool is_packed = false;          ///< by zlib or gzip
@@ -38,8 +40,9 @@ void set_image_axes(const std::array<Point3, 3>& steps,
                     const std::array<bool, 3>& is_negated,
                     Grid& grid);
 
-/// Sets steps and their times, which begin at `first` and are `interval` apart.
-/// @param interval  1 where it is not a positive number
+/// Makes a header that of a series, whose times begin at `first` and are `interval` apart.
+/// @param first, interval  0 and 1 are taken where they are not finite or, the interval, not above
+/// 0
 /// @throws std::invalid_argument  when the count is not from 1 to 2^31
 void set_image_steps(double count, double first, double interval, ImageHeader& header);
 

@@ -53,6 +53,22 @@ class OpenFile {
   int descriptor_ = -1;
 };
 
+/// Checks that a file can hold the samples of all steps.
+void check_size(const std::string& path, const ImageHeader& header, const OpenFile& file) {
+  // Packed by zlib, samples take no less than this share of their size.
+  constexpr double least_share = 1.0 / 1040;
+  const double share = header.is_packed ? least_share : 1;
+  const double wanted = static_cast<double>(header.grid.voxel_count()) *
+                        static_cast<double>(header.voxel_bytes()) *
+                        static_cast<double>(header.steps) * share;
+  const double after_header =
+      static_cast<double>(file.size() - std::max<std::int64_t>(0, header.data_offset));
+  if (wanted <= after_header) return;
+  throw IoError(path, "",
+                "its samples need " + bytes_text(wanted) + ", which '" + header.data_file +
+                    "' does not have: truncated or damaged");
+}
+
 /// Unpacks zlib's and gzip's streams part by part.
 class Unpacker {
  public:
@@ -116,19 +132,7 @@ class ImageSource : public VolumeSource {
                     "has no step " + std::to_string(step) + ", it has " +
                         std::to_string(header_.steps) + " from 0 on");
     }
-    // Packed by zlib, samples take no less than this share of their size.
-    constexpr double least_share = 1.0 / 1040;
-    const double share = header_.is_packed ? least_share : 1;
-    const double wanted = static_cast<double>(header_.grid.voxel_count()) *
-                          static_cast<double>(header_.voxel_bytes()) *
-                          static_cast<double>(header_.steps) * share;
-    const double after_header =
-        static_cast<double>(file_.size() - std::max<std::int64_t>(0, header_.data_offset));
-    if (wanted > after_header) {
-      throw IoError(path, "",
-                    "its samples need " + bytes_text(wanted) + ", which '" + header_.data_file +
-                        "' does not have: truncated or damaged");
-    }
+    check_size(path, header_, file_);
     if (header_.data_offset >= 0) return;
     if (header_.is_packed) throw IoError(path, "", "a packed image needs the place of its samples");
     header_.data_offset = file_.size() - header_.steps * bytes();
@@ -234,7 +238,10 @@ VolumeHeader read_image_volume_header(const std::string& path) {
   volume.arrays = {{image_array, header.type, header.components}};
   volume.active = image_array;
   volume.left_out = header.left_out;
-  volume.times = header.times;
+  if (header.is_series) check_size(path, header, OpenFile(header.data_file, path));
+  for (std::int64_t step = 0; header.is_series && step < header.steps; ++step) {
+    volume.times.push_back(header.first_time + static_cast<double>(step) * header.time_step);
+  }
   return volume;
 }
 
