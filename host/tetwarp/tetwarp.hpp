@@ -3,6 +3,7 @@
 #pragma once
 #include <tetwarp/backend.hpp>
 #include <tetwarp/blocks.hpp>
+#include <tetwarp/camera.hpp>
 #include <tetwarp/certify.hpp>
 #include <tetwarp/choices.hpp>
 #include <tetwarp/contact.hpp>

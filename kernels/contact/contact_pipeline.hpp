@@ -133,10 +133,6 @@ class ContactPipeline {
   }
 
  private:
-  template <class Op>
-  TETWARP_ANY_EXEC void run_contacts(const Op& op) {
-    exec_.for_each("contact/sweep", island_.contact_count(), FromIndex<Op>{op, island_.slot_begin});
-  }
   TETWARP_ANY_EXEC void find_velocities() {
     const std::int64_t first = island_.slot_begin, count = island_.contact_count();
     if (numbers_.is_local) {

@@ -190,7 +190,8 @@ Warnings step_warnings(const std::string& mesh,
 }
 
 std::string times_warning(const std::string& output, const std::vector<double>& times) {
-  return has_nifti_name(output) ? uneven_times(output, times) : unordered_times(output, times);
+  const bool keeps_interval = has_nifti_name(output) || has_image_name(output);
+  return keeps_interval ? uneven_times(output, times) : unordered_times(output, times);
 }
 
 void refuse_warnings(const Warnings& warnings) {
@@ -204,6 +205,15 @@ void print_warnings(const Warnings& warnings, const std::string& job) {
     fmt::print(stderr, "tetwarp: {}{}warning: {}\n", job, job.empty() ? "" : ": ",
                one_line(warning));
   }
+}
+
+void print_merged(const std::string& path, const std::string& merged) {
+  if (!merged.empty()) print_warnings({path + ": " + merged}, "");
+}
+
+void print_left_out(const std::string& path, const std::vector<std::string>& left_out) {
+  if (left_out.empty()) return;
+  fmt::print(stderr, "tetwarp: {}: left out: {}\n", path, one_line(listed(left_out)));
 }
 
 }  // namespace tetwarp::cli

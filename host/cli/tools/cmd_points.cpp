@@ -13,7 +13,6 @@
 #include <tetwarp/point_file.hpp>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
@@ -106,9 +105,7 @@ int run_points(const PointsArguments& arguments) {
   MeshReadOptions read = arguments.mesh;
   if (kind_of(arguments.mesh_file) != FileKind::mesh) read.import.axes = axes;
   const MeshReader mesh(arguments.mesh_file, read);
-  if (!mesh.header().merged.empty()) {
-    print_warnings({arguments.mesh_file + ": " + mesh.header().merged}, "");
-  }
+  print_merged(arguments.mesh_file, mesh.header().merged);
   const std::vector<std::int64_t> steps = selected_steps(arguments, mesh);
   const std::vector<std::string> names = output_names(arguments, steps);
   std::vector<std::string> inputs = {arguments.input, arguments.mesh_file};
@@ -193,12 +190,8 @@ void add_points_command(CLI::App& app, Run& run) {
            "is turned to ras and back [ras]");
   add_choice(*command, "--backend", arguments->map.backend, choices_of<Backend>(),
              "where to compute [auto, which is cpu]");
-  command->add_option("--device", arguments->map.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  command->add_option("--threads", arguments->map.threads, "threads, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(*command, arguments->map.device);
+  add_threads(*command, arguments->map.threads, "threads, 0 for all cores [0]");
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_points(*arguments); }; });
 }

@@ -121,7 +121,7 @@ void VoxelPlaces::set_place(std::int64_t t,
                             SourcePlace& place) const {
   const TetSetup& tet = setups_[static_cast<std::size_t>(t)];
   if (tet.kind == MapKind::trilinear) {
-    return hex_source_position(tet, hex_map(t, cache), x, place.whole, place.at);
+    return hex_source_position(hex_map(t, cache), x, place.whole, place.at);
   }
   double start[3], linear[3][3];
   map_start(tet, x, start, linear);
@@ -136,7 +136,7 @@ bool VoxelPlaces::set_dependence(std::int64_t t,
   if (hexes_.has(t)) {
     double u[3];
     const HexMap& map = hex_map(t, cache);
-    hex_local(map, tet, x, u);
+    hex_local(map, x, u);
     result.count = 8;
     for (int a = 0; a < 8; ++a) {
       result.weight[a] = 1;
