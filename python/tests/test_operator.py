@@ -99,6 +99,7 @@ def test_results_go_where_they_should(volume, mesh, twisted, samples):
 @pytest.mark.parametrize("change, message", [
     ({"interpolator": "labels"}, "filter: labels is not linear"),
     ({"interpolator": "sinc"}, "interpolator: "),
+    ({"outside": "falloff"}, "outside: the operator has no displacements beyond the mesh"),
     ({"mask": np.ones((2, 3, 4), bool)}, r"mask: expected bool of shape \(20, 24, 32\)"),
     ({"spacing": (1, 1, 1)}, "source: it has a grid; leave out spacing"),
     ({"deformed": np.zeros((3, 3))}, "deformed: expected"),
