@@ -35,8 +35,8 @@ CONSTANTS = {
 FITTED = ("W1_torso_700", "W3_waved_256_5000")
 LEFT_OUT = ("W1_torso_700", "floor")  # events around a launch are a large part of so short a one
 WORKLOADS = FITTED + (
-    "W6_orange_160", "W4_fish_35", "W3_waved_256_50000", "W3_waved_256_500000", "W2_rotated_128",
-    "W2_rotated_256", "W2_rotated_384", "W2_rotated_384_40", "W2_rotated_384_2560")
+    "W6_orange_160", "W4_fish_35", "W3_waved_256_50000", "W3_waved_256_500000", "W2_rotated_256",
+    "W2_rotated_384")
 MEASURED = ("2026-11-27-h200-resident.json", "2026-11-27-h200-figures.json")
 # Durations of single kernels: those of the commit c1b1dae that are the same now but for names, and
 # the raster of groups as docs/cuda.md has it.

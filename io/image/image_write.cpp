@@ -186,79 +186,78 @@ class ImageSink : public VolumeSink {
   }
 
   [[noreturn]] void fail() const { throw_disk_error(path_); }
-}
 
   bool close_file() {
-  if (descriptor_ < 0) return true;
-  const bool is_closed = close(descriptor_) == 0;
-  descriptor_ = -1;
-  return is_closed;
-}
+    if (descriptor_ < 0) return true;
+    const bool is_closed = close(descriptor_) == 0;
+    descriptor_ = -1;
+    return is_closed;
+  }
 
-/// Copies all steps behind the header.
-void copy() {
-  std::vector<std::byte> part(nifti_part_bytes);
-  for (std::int64_t done = 0; done < bytes();) {
-    const auto count =
-        static_cast<std::size_t>(std::min<std::int64_t>(std::ssize(part), bytes() - done));
-    if (!read_at(scratch_->descriptor(), part.data(), count, done) ||
-        !write_at(descriptor_, part.data(), count, start_ + done)) {
-      fail();
-    }
-    done += static_cast<std::int64_t>(count);
-  }
-  scratch_.reset();
-}
-
-/// MetaImage has zlib's format, the others gzip's; FreeSurfer packs the header, too.
-void pack() {
-  z_stream stream{};
-  const bool is_gzip = format_ == ImageFormat::nrrd || format_ == ImageFormat::mgh;
-  const int window = 15 + (is_gzip ? 16 : 0);
-  constexpr int memory = 8;
-  if (deflateInit2(&stream, level_, Z_DEFLATED, window, memory, Z_DEFAULT_STRATEGY) != Z_OK) {
-    throw IoError(path_, "", "cannot be packed: zlib has no memory");
-  }
-  std::vector<Bytef> plain(nifti_part_bytes), packed(nifti_part_bytes);
-  if (format_ == ImageFormat::mgh) {
-    const std::string text = header_text();
-    std::ranges::copy(text, plain.begin());
-    stream.next_in = plain.data();
-    stream.avail_in = static_cast<uInt>(text.size());
-  }
-  std::int64_t done = 0, at = start_;
-  bool is_sound = true;
-  for (int state = Z_OK; state != Z_STREAM_END && is_sound;) {
-    if (stream.avail_in == 0 && done < bytes()) {
+  /// Copies all steps behind the header.
+  void copy() {
+    std::vector<std::byte> part(nifti_part_bytes);
+    for (std::int64_t done = 0; done < bytes();) {
       const auto count =
-          static_cast<std::size_t>(std::min<std::int64_t>(std::ssize(plain), bytes() - done));
-      is_sound = read_at(scratch_->descriptor(), plain.data(), count, done);
+          static_cast<std::size_t>(std::min<std::int64_t>(std::ssize(part), bytes() - done));
+      if (!read_at(scratch_->descriptor(), part.data(), count, done) ||
+          !write_at(descriptor_, part.data(), count, start_ + done)) {
+        fail();
+      }
       done += static_cast<std::int64_t>(count);
-      stream.next_in = plain.data();
-      stream.avail_in = static_cast<uInt>(count);
     }
-    stream.next_out = packed.data();
-    stream.avail_out = static_cast<uInt>(packed.size());
-    state = deflate(&stream, done < bytes() ? Z_NO_FLUSH : Z_FINISH);
-    const std::size_t count = packed.size() - stream.avail_out;
-    is_sound = is_sound && write_at(descriptor_, packed.data(), count, at);
-    at += static_cast<std::int64_t>(count);
+    scratch_.reset();
   }
-  deflateEnd(&stream);
-  if (!is_sound) fail();
-  scratch_.reset();
-}
 
-std::string path_;
-ImageFormat format_;
-bool is_itk_field_;
-bool is_temporal_;
-int level_;
-ImageHeader header_;
-std::optional<FinishedFile> file_;  // that holds the samples
-int descriptor_ = -1;
-std::int64_t start_ = 0;  // of the samples
-std::optional<ScratchFile> scratch_;
+  /// MetaImage has zlib's format, the others gzip's; FreeSurfer packs the header, too.
+  void pack() {
+    z_stream stream{};
+    const bool is_gzip = format_ == ImageFormat::nrrd || format_ == ImageFormat::mgh;
+    const int window = 15 + (is_gzip ? 16 : 0);
+    constexpr int memory = 8;
+    if (deflateInit2(&stream, level_, Z_DEFLATED, window, memory, Z_DEFAULT_STRATEGY) != Z_OK) {
+      throw IoError(path_, "", "cannot be packed: zlib has no memory");
+    }
+    std::vector<Bytef> plain(nifti_part_bytes), packed(nifti_part_bytes);
+    if (format_ == ImageFormat::mgh) {
+      const std::string text = header_text();
+      std::ranges::copy(text, plain.begin());
+      stream.next_in = plain.data();
+      stream.avail_in = static_cast<uInt>(text.size());
+    }
+    std::int64_t done = 0, at = start_;
+    bool is_sound = true;
+    for (int state = Z_OK; state != Z_STREAM_END && is_sound;) {
+      if (stream.avail_in == 0 && done < bytes()) {
+        const auto count =
+            static_cast<std::size_t>(std::min<std::int64_t>(std::ssize(plain), bytes() - done));
+        is_sound = read_at(scratch_->descriptor(), plain.data(), count, done);
+        done += static_cast<std::int64_t>(count);
+        stream.next_in = plain.data();
+        stream.avail_in = static_cast<uInt>(count);
+      }
+      stream.next_out = packed.data();
+      stream.avail_out = static_cast<uInt>(packed.size());
+      state = deflate(&stream, done < bytes() ? Z_NO_FLUSH : Z_FINISH);
+      const std::size_t count = packed.size() - stream.avail_out;
+      is_sound = is_sound && write_at(descriptor_, packed.data(), count, at);
+      at += static_cast<std::int64_t>(count);
+    }
+    deflateEnd(&stream);
+    if (!is_sound) fail();
+    scratch_.reset();
+  }
+
+  std::string path_;
+  ImageFormat format_;
+  bool is_itk_field_;
+  bool is_temporal_;
+  int level_;
+  ImageHeader header_;
+  std::optional<FinishedFile> file_;  // that holds the samples
+  int descriptor_ = -1;
+  std::int64_t start_ = 0;  // of the samples
+  std::optional<ScratchFile> scratch_;
 };
 }  // namespace
 

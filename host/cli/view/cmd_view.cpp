@@ -86,7 +86,7 @@ void declare_picture(CLI::App& app, view::ViewOptions& options) {
   app.add_option("--preset", options.preset, "colors of volumes [ct]")
       ->check(CLI::IsMember({"ct", "mr"}).description(""))
       ->type_name("ct|mr");
-  app.add_option("--voxels", options.voxels, "most voxels of a warped volume, about [2000000]")
+  app.add_option("--voxels", options.voxels, "most voxels of all warped volumes, about [2000000]")
       ->check(between(1000, 1'000'000'000))
       ->type_name("N");
   app.add_option("--screenshot", options.screenshot, "picture of the end")->type_name("FILE.png");
