@@ -76,6 +76,36 @@ AdhesionState adhesion_of(const nb::dict& all) {
   return adhesion;
 }
 
+std::vector<std::int32_t> indices_of(nb::handle array) {
+  return vector_of(nb::cast<InIndices>(array, false));
+}
+
+/// Sets a vector from the array of its name, if there is one.
+template <class Number, class Read>
+void read_to(std::vector<Number>& numbers, const nb::dict& all, const char* name, Read read) {
+  if (all.contains(name)) numbers = read(all[name]);
+}
+
+BilateralRows bilateral_of(const nb::dict& all) {
+  BilateralRows rows;
+  rows.jacobian = matrix_of(nb::cast<nb::tuple>(all["jacobian"]));
+  read_to(rows.target, all, "target", numbers_of);
+  read_to(rows.compliance, all, "compliance", numbers_of);
+  read_to(rows.group_start, all, "group_start", indices_of);
+  read_to(rows.impulse_guess, all, "impulse_guess", numbers_of);
+  return rows;
+}
+
+RollingFriction rolling_of(const nb::dict& all) {
+  RollingFriction entries;
+  entries.jacobian = matrix_of(nb::cast<nb::tuple>(all["jacobian"]));
+  read_to(entries.contact, all, "contact", indices_of);
+  read_to(entries.rolling, all, "rolling", numbers_of);
+  read_to(entries.torsion, all, "torsion", numbers_of);
+  read_to(entries.impulse_guess, all, "impulse_guess", numbers_of);
+  return entries;
+}
+
 /// @param all  arrays and matrices by the names of the members; what is missing stays empty
 ContactProblem problem_of(const nb::dict& all) {
   ContactProblem problem;
@@ -86,10 +116,11 @@ ContactProblem problem_of(const nb::dict& all) {
   for (const NumbersOf& numbers : problem_numbers) {
     if (all.contains(numbers.name)) problem.*numbers.member = numbers_of(all[numbers.name]);
   }
-  if (all.contains("block_start")) {
-    problem.block_start = vector_of(nb::cast<InIndices>(all["block_start"], false));
-  }
-  if (all.contains("adhesion")) problem.adhesion = adhesion_of(nb::cast<nb::dict>(all["adhesion"]));
+  read_to(problem.block_start, all, "block_start", indices_of);
+  const auto part = [&](const char* name) { return nb::cast<nb::dict>(all[name]); };
+  if (all.contains("adhesion")) problem.adhesion = adhesion_of(part("adhesion"));
+  if (all.contains("bilateral")) problem.bilateral = bilateral_of(part("bilateral"));
+  if (all.contains("rolling")) problem.rolling = rolling_of(part("rolling"));
   return problem;
 }
 
@@ -109,6 +140,32 @@ nb::dict dict_of(AdhesionState adhesion) {
   return all;
 }
 
+/// The arrays that are not empty, by their names.
+template <class Number>
+void write_from(std::vector<Number>& numbers, nb::dict& all, const char* name) {
+  if (!numbers.empty()) all[name] = array_of(std::move(numbers));
+}
+
+nb::dict dict_of(BilateralRows rows) {
+  nb::dict all;
+  all["jacobian"] = tuple_of(std::move(rows.jacobian));
+  write_from(rows.target, all, "target");
+  write_from(rows.compliance, all, "compliance");
+  write_from(rows.group_start, all, "group_start");
+  write_from(rows.impulse_guess, all, "impulse_guess");
+  return all;
+}
+
+nb::dict dict_of(RollingFriction entries) {
+  nb::dict all;
+  all["jacobian"] = tuple_of(std::move(entries.jacobian));
+  write_from(entries.contact, all, "contact");
+  write_from(entries.rolling, all, "rolling");
+  write_from(entries.torsion, all, "torsion");
+  write_from(entries.impulse_guess, all, "impulse_guess");
+  return all;
+}
+
 nb::dict dict_of(ContactProblem problem) {
   nb::dict all;
   for (const MatrixOf& matrix : problem_matrices) {
@@ -121,6 +178,8 @@ nb::dict dict_of(ContactProblem problem) {
   }
   if (!problem.block_start.empty()) all["block_start"] = array_of(std::move(problem.block_start));
   if (!problem.adhesion.empty()) all["adhesion"] = dict_of(std::move(problem.adhesion));
+  if (!problem.bilateral.empty()) all["bilateral"] = dict_of(std::move(problem.bilateral));
+  if (!problem.rolling.empty()) all["rolling"] = dict_of(std::move(problem.rolling));
   return all;
 }
 
@@ -171,7 +230,9 @@ class DictSolver {
     const std::string report = to_json(solution.report);
     return nb::make_tuple(rows_of(std::move(solution.impulse)),
                           rows_of(std::move(solution.velocity)),
-                          array_of(std::move(solution.body_velocity)), report);
+                          array_of(std::move(solution.body_velocity)),
+                          array_of(std::move(solution.bilateral_impulse)),
+                          rows_of(std::move(solution.rolling_impulse)), report);
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <tetwarp/certify.hpp>
+#include <utility>
 
 #include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"

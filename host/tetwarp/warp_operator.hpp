@@ -17,9 +17,10 @@ namespace tetwarp {
 
 /// Choices of a WarpOperator.
 struct WarpOperatorOptions {
-  Filter filter = Filter::linear;         ///< any but labels, which is not linear in the samples
-  Outside outside = Outside::background;  ///< background: rows of voxels without a cell are zero
-  std::optional<Grid> output_grid = {};   ///< nothing: the grid of the source
+  Filter filter = Filter::linear;  ///< any but labels, which is not linear in the samples
+  /// background: rows of voxels without a cell are zero; or identity.
+  Outside outside = Outside::background;
+  std::optional<Grid> output_grid = {};  ///< nothing: the grid of the source
   /// One per voxel of the output grid; rows of voxels with 0 are zero. Empty: none is left out.
   std::vector<std::uint8_t> mask = {};
   int threads = 0;  ///< up to 1024; 0: all cores

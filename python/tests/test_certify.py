@@ -39,6 +39,20 @@ def test_a_step_of_a_simulation_is_free():
     assert tetwarp.certify([(points, moved, triangles)])
 
 
+def test_collisions_of_surfaces_at_rest():
+    volume = tetwarp.phantom("orange", shape=(12, 12, 12))
+    points, triangles = tetwarp.isosurface(volume, 0.5)
+    size = np.ptp(points, axis=0)
+
+    apart = tetwarp.find_collisions([(points, triangles), (points + 1.5 * size, triangles)])
+    overlapping = tetwarp.find_collisions([(points, triangles), (points + 0.4 * size, triangles)])
+
+    assert len(apart.triangles) == 0 and "0 pairs" in repr(apart)
+    assert len(overlapping.triangles) > 4 and (overlapping.surfaces == (0, 1)).all()
+    with pytest.raises(ValueError, match=r"surfaces\[0\]: expected \(points, triangles\)"):
+        tetwarp.find_collisions([points])
+
+
 @pytest.mark.parametrize("surface, message", [
     ((TRIANGLE, FACES), r"surfaces\[0\]: expected \(start, end, triangles\)"),
     ((TRIANGLE, NEEDLE[:2], FACES), r"surfaces\[0\]: end: expected 3 rows"),

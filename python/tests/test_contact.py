@@ -55,6 +55,60 @@ def test_adhesion_holds_what_is_pulled():
     assert tetwarp.solve_contacts(**pulled, adhesion=adhesion).impulse[0, 0] < 0
 
 
+def test_a_joint_holds_with_either_sign():
+    joint = np.array([(0, 1, 0, 0, 0, 0), (0, 0, 1, 0, 0, 0)], float)
+
+    solution = tetwarp.solve_contacts(
+        **GLOBAL, bilateral=dict(jacobian=joint, target=[0.25, 0], compliance=[0, 0.5]),
+        tolerance=1e-10)
+
+    assert solution.converged
+    v, r, held = solution.body_velocity, solution.impulse.ravel(), solution.bilateral_impulse
+    assert v[1] == pytest.approx(0.25)
+    assert v[2] + 0.5 * held[1] == pytest.approx(0)
+    assert np.allclose(SYSTEM @ v, JACOBIAN.T @ r + joint.T @ held + GLOBAL["load"])
+
+
+def test_rolling_friction_stops_a_roll():
+    """A ball of 1 kg on the floor, turning slowly; dofs: velocity, then angular velocity."""
+    system = np.diag([1.0, 1, 1, 0.4, 0.4, 0.4])
+    contact = dict(system=system, jacobian=np.eye(3, 6), load=[-1, 0, 0, 0, 0.004, 0],
+                   velocity_offset=[0, 0, 0], friction=[0.0], block_start=[0, 6])
+    turning = np.eye(3, 6, 3)
+
+    free = tetwarp.solve_contacts(**contact)
+    stopped = tetwarp.solve_contacts(**contact, rolling=dict(
+        contact=[0], jacobian=turning, rolling=[0.1], torsion=[0.1]))
+
+    assert free.body_velocity[4] == pytest.approx(0.01)
+    assert stopped.body_velocity[4] == pytest.approx(0, abs=1e-6)
+    assert stopped.rolling_impulse.shape == (1, 3)
+    assert stopped.rolling_impulse[0, 1] == pytest.approx(-0.004, rel=1e-3)
+
+
+def test_further_rows_are_written_and_read(tmp_path):
+    rows = dict(jacobian=np.eye(1, 6), target=[0.5], group_start=[0, 1])
+    rolling = dict(contact=[0], jacobian=np.eye(3, 6, 3), rolling=[0.1], torsion=[0.2])
+    tetwarp.write(tmp_path / "a.h5", tetwarp.ContactProblem(**GLOBAL, bilateral=rows,
+                                                            rolling=rolling))
+
+    back = tetwarp.read(tmp_path / "a.h5")
+
+    assert np.array_equal(back.bilateral["jacobian"].tocsr().toarray(), np.eye(1, 6))
+    assert back.bilateral["target"].tolist() == [0.5]
+    assert back.rolling["torsion"].tolist() == [0.2]
+
+
+def test_wrong_rows_are_named():
+    rows = dict(jacobian=np.eye(1, 6), target=[0.5])
+    with pytest.raises(ValueError, match="bilateral: 'goal' is not one of jacobian, target"):
+        tetwarp.ContactProblem(**GLOBAL, bilateral=dict(rows, goal=[1]))
+    with pytest.raises(ValueError, match="rolling: expected jacobian"):
+        tetwarp.ContactProblem(**GLOBAL, rolling=dict(contact=[0]))
+    with pytest.raises(ValueError, match="bilateral.compliance"):
+        tetwarp.solve_contacts(**GLOBAL, bilateral=dict(rows, compliance=[-1]))
+
+
 def test_a_solver_solves_a_series():
     solver = tetwarp.ContactSolver(tolerance=1e-9)
     for push in (1.0, 2.0, 4.0):

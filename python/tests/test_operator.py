@@ -80,11 +80,11 @@ def test_scipy_takes_the_operator(volume, mesh, twisted, samples):
     operator = tetwarp.WarpOperator(volume, *mesh, twisted)
     y = operator.forward(samples)
 
-    found = linalg.lsqr(operator, y.ravel(), iter_lim=60)[0].reshape(volume.shape)
+    found = linalg.lsqr(operator, y.ravel(), iter_lim=10)[0].reshape(volume.shape)
 
     linear = linalg.aslinearoperator(operator)
     assert linear.shape == operator.shape == (samples.size, samples.size)
-    assert np.linalg.norm(operator.forward(found) - y) < 1e-3 * np.linalg.norm(y)
+    assert np.linalg.norm(operator.forward(found) - y) < 0.03 * np.linalg.norm(y)
 
 
 def test_results_go_where_they_should(volume, mesh, twisted, samples):
@@ -99,6 +99,7 @@ def test_results_go_where_they_should(volume, mesh, twisted, samples):
 @pytest.mark.parametrize("change, message", [
     ({"interpolator": "labels"}, "filter: labels is not linear"),
     ({"interpolator": "sinc"}, "interpolator: "),
+    ({"outside": "falloff"}, "outside: the operator has no displacements beyond the mesh"),
     ({"mask": np.ones((2, 3, 4), bool)}, r"mask: expected bool of shape \(20, 24, 32\)"),
     ({"spacing": (1, 1, 1)}, "source: it has a grid; leave out spacing"),
     ({"deformed": np.zeros((3, 3))}, "deformed: expected"),

@@ -15,7 +15,7 @@ from ._bridges import (
     to_sitk_transform,
     volume_from,
 )
-from ._certify import Certificate, certify
+from ._certify import Certificate, Collisions, certify, find_collisions
 from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
 from ._core import Cancelled, CudaError, IoError, available_backends
 from ._core import version as __version__
@@ -38,6 +38,7 @@ from ._warp import Warper, WarpResult, warp
 __all__ = [
     "Cancelled",
     "Certificate",
+    "Collisions",
     "ContactProblem",
     "ContactSolution",
     "ContactSolver",
@@ -63,6 +64,7 @@ __all__ = [
     "certify",
     "deform",
     "displacement_field",
+    "find_collisions",
     "isosurface",
     "jacobian_determinant",
     "lattice_mesh",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, NamedTuple, Sequence
 
 import numpy as np
 
@@ -89,3 +89,50 @@ def certify(
         most_intervals=int(most_intervals), threads=int(threads),
     )
     return Certificate(**(found | {"meets": found["meets"].view(bool)}))
+
+
+class Collisions(NamedTuple):
+    """Pairs of triangles that intersect, sorted.
+
+    surfaces : (n, 2) int32, numbers of the two surfaces, the lower one first
+    triangles : (n, 2) int32, numbers of the triangles in them
+    """
+
+    surfaces: np.ndarray
+    triangles: np.ndarray
+
+    def __repr__(self) -> str:
+        return f"Collisions({len(self.triangles)} pairs of triangles)"
+
+
+def find_collisions(
+    surfaces: Sequence[tuple[Any, Any]],
+    *,
+    self_intersections: bool = True,
+    threads: int = 0,
+) -> Collisions:
+    """The pairs of triangles of surfaces at rest that have a point in common, decided exactly.
+
+    Parameters
+    ----------
+    surfaces : per surface (points, triangles), a Surface: (n, 3) positions and (m, 3) integers
+    self_intersections : also of triangles of one surface that share no point of it
+    threads : 0: all processors
+
+    Raises
+    ------
+    ValueError
+        naming the argument that is wrong and what it should be.
+
+    >>> corners = np.array([(0, 0, 0), (4, 0, 0), (0, 4, 0)], float)
+    >>> faces = np.array([(0, 1, 2)])
+    >>> find_collisions([(corners, faces), (corners + (1, 1, 0), faces)]).surfaces.tolist()
+    [[0, 1]]
+    """
+    still = []
+    for number, surface in enumerate(surfaces):
+        if not isinstance(surface, (tuple, list)) or len(surface) != 2:
+            raise ValueError(f"surfaces[{number}]: expected (points, triangles)")
+        still.append((surface[0], surface[0], surface[1]))
+    found = certify(still, self_intersections=self_intersections, threads=threads)
+    return Collisions(found.surfaces, found.triangles)

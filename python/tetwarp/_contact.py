@@ -72,6 +72,30 @@ _VECTORS = (
 )
 
 
+#: Members of further rows; `True`: numbers, `False`: integers.
+_ROWS = {
+    "bilateral": {"target": True, "compliance": True, "group_start": False, "impulse_guess": True},
+    "rolling": {"contact": False, "rolling": True, "torsion": True, "impulse_guess": True},
+}
+
+
+def _rows_of(rows: dict[str, Any], name: str, allowed: dict[str, bool]) -> dict[str, Any]:
+    """Rows beyond those of contacts, checked."""
+    if "jacobian" not in rows:
+        raise ValueError(f"{name}: expected jacobian, a matrix")
+    result: dict[str, Any] = {"jacobian": csr_of(rows["jacobian"], f"{name}.jacobian")}
+    for key, value in rows.items():
+        if key == "jacobian":
+            continue
+        if key not in allowed:
+            raise ValueError(f"{name}: {key!r} is not one of jacobian, {', '.join(allowed)}")
+        if allowed[key]:
+            result[key] = numbers_of(value, f"{name}.{key}")
+        else:
+            result[key] = np.ascontiguousarray(value, dtype=np.int32).reshape(-1)
+    return result
+
+
 @dataclass(eq=False)
 class ContactProblem:
     """Contacts of one time step in one of two forms; the members of the other form stay None:
@@ -90,6 +114,13 @@ class ContactProblem:
     block_start : first degree of freedom of each body, then their number
     adhesion : dict with time_step [s] and per contact area, stiffness, tangential_stiffness,
         intensity, gap (three), energy, viscosity, bonding_rate, saturation_pressure
+    bilateral : dict of rows that hold with either sign, joints and couplings, in global form: its
+        jacobian J_b, (rows, dofs), and per row target [m/s] and compliance [1/kg]; group_start,
+        first row of each group of one to three that are solved together, then their number;
+        impulse_guess. J_b v + compliance lambda = target
+    rolling : dict of resistance to rolling and spinning, in global form: contact, the contact of
+        each entry; its jacobian, (3 entries, dofs), to the angular velocity about normal, tangent 1
+        and tangent 2; rolling and torsion [m] per entry; impulse_guess
     """
 
     system: Any = None
@@ -103,6 +134,8 @@ class ContactProblem:
     impulse_guess: Any = None
     block_start: Any = None
     adhesion: dict[str, Any] | None = None
+    bilateral: dict[str, Any] | None = None
+    rolling: dict[str, Any] | None = None
 
     def __post_init__(self) -> None:
         for name in _MATRICES:
@@ -113,6 +146,9 @@ class ContactProblem:
                 setattr(self, name, numbers_of(getattr(self, name), name))
         if self.block_start is not None:
             self.block_start = np.ascontiguousarray(self.block_start, dtype=np.int32).reshape(-1)
+        for name, allowed in _ROWS.items():
+            if getattr(self, name) is not None:
+                setattr(self, name, _rows_of(getattr(self, name), name, allowed))
         if self.adhesion is not None:
             if "time_step" not in self.adhesion:
                 raise ValueError("adhesion: expected time_step [s]")
@@ -131,11 +167,13 @@ class ContactProblem:
         return f"ContactProblem({self.contact_count} contacts, {form} form)"
 
     def _core(self) -> dict[str, Any]:
+        def plain(value: Any) -> Any:
+            if isinstance(value, dict):
+                return {key: plain(part) for key, part in value.items()}
+            return tuple(value) if isinstance(value, Csr) else value
+
         given = {f.name: getattr(self, f.name) for f in fields(self)}
-        return {
-            name: tuple(value) if isinstance(value, Csr) else value
-            for name, value in given.items() if value is not None
-        }
+        return {name: plain(value) for name, value in given.items() if value is not None}
 
 
 @dataclass(eq=False)
@@ -145,6 +183,8 @@ class ContactSolution:
     impulse : r, (contacts, 3): normal, tangent 1, tangent 2 [N s]
     velocity : u, (contacts, 3) [m/s]
     body_velocity : v, (dofs,) [m/s, rad/s]; empty in local form
+    bilateral_impulse : lambda of `bilateral`, (rows,)
+    rolling_impulse : m of `rolling`, (entries, 3) [N m s]
     status : ``"converged"``, ``"not converged"``, ``"infeasible"`` or ``"unbounded"``
     report : what the solve did; its keys are in docs/formats.md
     """
@@ -152,6 +192,8 @@ class ContactSolution:
     impulse: np.ndarray
     velocity: np.ndarray
     body_velocity: np.ndarray
+    bilateral_impulse: np.ndarray
+    rolling_impulse: np.ndarray
     status: str
     report: dict[str, Any] = field(default_factory=dict)
 
@@ -206,9 +248,9 @@ class ContactSolver:
         progress: Callable[[float, int], Any] | None = None,
     ) -> ContactSolution:
         """Solves one problem; see solve_contacts()."""
-        impulse, velocity, body_velocity, text = self._solver.solve(problem._core(), progress)
+        *arrays, text = self._solver.solve(problem._core(), progress)
         report = json.loads(text)
-        return ContactSolution(impulse, velocity, body_velocity, report["status"], report)
+        return ContactSolution(*arrays, report["status"], report)
 
 
 def solve_contacts(
@@ -225,6 +267,8 @@ def solve_contacts(
     impulse_guess: Any = None,
     block_start: Any = None,
     adhesion: dict[str, Any] | None = None,
+    bilateral: dict[str, Any] | None = None,
+    rolling: dict[str, Any] | None = None,
     progress: Callable[[float, int], Any] | None = None,
     **options: Any,
 ) -> ContactSolution:
@@ -263,7 +307,8 @@ def solve_contacts(
         "system": system, "jacobian": jacobian, "load": load, "velocity_offset": velocity_offset,
         "delassus": delassus, "free_velocity": free_velocity, "friction": friction,
         "second_friction": second_friction, "impulse_guess": impulse_guess,
-        "block_start": block_start, "adhesion": adhesion,
+        "block_start": block_start, "adhesion": adhesion, "bilateral": bilateral,
+        "rolling": rolling,
     }
     if problem is None:
         problem = ContactProblem(**members)

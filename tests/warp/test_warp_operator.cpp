@@ -315,6 +315,8 @@ TEST(WarpOperator, BadArgumentsAreNamed) {
     return message_of([&] { WarpOperator(at.grid, at.mesh, at.deformed, options); });
   };
   EXPECT_NE(made_with({.filter = Filter::labels}).find("filter: labels"), std::string::npos);
+  EXPECT_NE(made_with({.outside = Outside::nearest}).find("choose background or identity"),
+            std::string::npos);
   EXPECT_NE(made_with({.mask = {1, 1}}).find("mask: expected one number for each of 27 voxels"),
             std::string::npos);
   const WarpOperator warp(at.grid, at.mesh, at.deformed, {.filter = Filter::nearest});

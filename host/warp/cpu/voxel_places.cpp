@@ -23,6 +23,11 @@ WarpPlan operator_plan(const Grid& source,
         "filter: labels is not linear in the samples; choose nearest, linear, cubic, bspline or "
         "lanczos");
   }
+  if (extends(options.outside)) {
+    throw std::invalid_argument(
+        "outside: the operator has no displacements beyond the mesh; choose background or "
+        "identity");
+  }
   const auto voxels = static_cast<std::size_t>(output.voxel_count());
   if (!options.mask.empty() && options.mask.size() != voxels) {
     throw std::invalid_argument("mask: expected one number for each of " + std::to_string(voxels) +
