@@ -32,14 +32,14 @@ bool DeformableSolver::begin(BodyStepper& stepper, const ContactShare& share) {
   return can_try;
 }
 
-TwoLevelOutcome DeformableSolver::solve(BodyStepper& stepper,
-                                        const SoftProblem& all,
-                                        StepRows& rows,
-                                        std::vector<Point3>& velocity) {
+CoupledOutcome DeformableSolver::solve(BodyStepper& stepper,
+                                       const SoftProblem& all,
+                                       StepRows& rows,
+                                       std::vector<Point3>& velocity) {
   gather_laws(all.contacts, all.laws, laws_);
   const SoftProblem problem = {all.state, all.islands,  all.sides, all.rows,
                                all.takes, all.contacts, laws_,     all.change};
-  TwoLevelOutcome on_device;
+  CoupledOutcome on_device;
   if (resident_ != nullptr) {
     on_device = on_device_.solve(*resident_, problem, velocity);
     impulse_ = on_device_.impulse();
@@ -48,7 +48,7 @@ TwoLevelOutcome DeformableSolver::solve(BodyStepper& stepper,
     if (on_device.is_result || on_device.is_stopped) return on_device;
   }
   rows.set_all();
-  TwoLevelOutcome on_host = on_host_.solve(stepper.system(), problem, velocity);
+  CoupledOutcome on_host = on_host_.solve(stepper.system(), problem, velocity);
   impulse_ = on_host_.impulse();
   contact_velocity_ = on_host_.contact_velocity();
   on_host.outer_iterations += on_device.outer_iterations;

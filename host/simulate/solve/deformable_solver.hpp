@@ -30,10 +30,10 @@ class DeformableSolver {
   /// @param all       its laws are those of all contacts
   /// @param rows      those of `all`; are set for all contacts where the host solves
   /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
-  TwoLevelOutcome solve(BodyStepper& stepper,
-                        const SoftProblem& all,
-                        StepRows& rows,
-                        std::vector<Point3>& velocity);
+  CoupledOutcome solve(BodyStepper& stepper,
+                       const SoftProblem& all,
+                       StepRows& rows,
+                       std::vector<Point3>& velocity);
 
   /// r and u of the contacts of the last solve(), [3 contacts].
   std::span<const double> impulse() const { return impulse_; }

@@ -40,7 +40,8 @@ TwoLevelOnDevice::TwoLevelOnDevice(const SceneSurfaces& scene,
     : scene_(scene),
       options_(options),
       factors_(std::move(factors)),
-      maker_(bodies_with_inverses(model, *factors_), TwoLevelControl::relaxation(options)) {}
+      maker_(bodies_with_inverses(model, *factors_),
+             CoupledControl::omega(options.expert.relaxation)) {}
 
 bool TwoLevelOnDevice::can_take(const std::vector<std::uint8_t>& takes) const {
   for (std::size_t i = 0; i < takes.size(); ++i) {
@@ -50,43 +51,15 @@ bool TwoLevelOnDevice::can_take(const std::vector<std::uint8_t>& takes) const {
   return true;
 }
 
-TwoLevelOutcome TwoLevelOnDevice::solve(ResidentTwoLevel& resident,
-                                        const SoftProblem& problem,
-                                        std::vector<Point3>& velocity) {
+CoupledOutcome TwoLevelOnDevice::solve(ResidentTwoLevel& resident,
+                                       const SoftProblem& problem,
+                                       std::vector<Point3>& velocity) {
   maker_.make(resident.rows(), problem.islands, problem.takes);
-  set_start(problem);
-  const TwoLevelOutcome outcome =
+  start_.set(problem, maker_.lists(), *factors_);
+  const CoupledOutcome outcome =
       resident.solve(binding_of(scene_), maker_.lists(), start_, *factors_, options_);
   if (outcome.is_result) take_results(resident.results(), velocity);
   return outcome;
-}
-
-void TwoLevelOnDevice::set_start(const SoftProblem& problem) {
-  const ContactProblem& laws = problem.laws;
-  const CompliantLists& lists = maker_.lists();
-  start_.time_step = laws.adhesion.time_step;
-  start_.contacts.clear();
-  for (const std::int32_t c : problem.contacts) {
-    start_.contacts.push_back(problem.sides[index_of(c)]);
-  }
-  start_.laws.set(laws);
-  start_.offset = laws.velocity_offset;
-  start_.impulse = laws.impulse_guess;
-  for (std::size_t c = 0; c < start_.laws.preload.size(); ++c) {
-    start_.impulse[3 * c] += start_.laws.preload[c];
-  }
-  start_.change.clear();
-  for (std::size_t row = 0; row < lists.model_block.size() && !problem.change.empty(); ++row) {
-    const Point3& own = problem.change[index_of(lists.model_block[row])];
-    start_.change.insert(start_.change.end(), own.begin(), own.end());
-  }
-  factors_->set_time_step(start_.time_step);
-  start_.rotation.clear();
-  for (const std::int32_t body : lists.model_body) {
-    const auto rotation =
-        factors_->of_body(body).mean_rotation(problem.state.position.front().data());
-    start_.rotation.insert(start_.rotation.end(), rotation.begin(), rotation.end());
-  }
 }
 
 void TwoLevelOnDevice::take_results(const ResidentResults& results, std::vector<Point3>& velocity) {

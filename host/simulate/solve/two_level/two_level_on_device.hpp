@@ -29,16 +29,15 @@ class TwoLevelOnDevice {
 
   /// @param resident  of the stepper, after its solve()
   /// @param velocity  out, if there is a result: with contact in the islands, [block_count]
-  TwoLevelOutcome solve(ResidentTwoLevel& resident,
-                        const SoftProblem& problem,
-                        std::vector<Point3>& velocity);
+  CoupledOutcome solve(ResidentTwoLevel& resident,
+                       const SoftProblem& problem,
+                       std::vector<Point3>& velocity);
 
   /// r and u of the contacts of the last solve(), [3 contacts].
   const std::vector<double>& impulse() const { return impulse_; }
   const std::vector<double>& contact_velocity() const { return contact_velocity_; }
 
  private:
-  void set_start(const SoftProblem& problem);
   void take_results(const ResidentResults& results, std::vector<Point3>& velocity);
 
   const SceneSurfaces& scene_;
