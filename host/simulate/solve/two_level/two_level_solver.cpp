@@ -187,11 +187,7 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
     take_best();
     blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
   }
-  for (std::size_t row = 0; row < lists().model_block.size(); ++row) {
-    std::copy_n(x_.begin() + static_cast<std::ptrdiff_t>(3 * row), 3,
-                velocity[index_of(lists().model_block[row])].begin());
-  }
-  for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] -= given_.laws.preload[c];
+  given_.finish(lists(), x_, impulse_, velocity);
   return outcome;
 }
 

@@ -56,8 +56,6 @@ class TwoLevelSolver {
   const std::vector<double>& impulse() const { return impulse_; }
   const std::vector<double>& contact_velocity() const { return contact_velocity_; }
 
-  const std::shared_ptr<RestFactors>& factors() const { return factors_; }
-
   // What solve_coupled() calls, which says what they do.
   using Next = CoupledControl::Next;
   CpuExec& exec() { return exec_; }

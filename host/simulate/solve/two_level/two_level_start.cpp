@@ -28,4 +28,15 @@ void TwoLevelStart::set(const SoftProblem& problem,
   }
 }
 
+void TwoLevelStart::finish(const CompliantLists& lists,
+                           std::span<const double> of_rows,
+                           std::vector<double>& impulse,
+                           std::vector<Point3>& velocity) const {
+  for (std::size_t c = 0; c < laws.preload.size(); ++c) impulse[3 * c] -= laws.preload[c];
+  for (std::size_t row = 0; row < lists.model_block.size(); ++row) {
+    Point3& own = velocity[index_of(lists.model_block[row])];
+    for (std::size_t i = 0; i < 3; ++i) own[i] = of_rows[3 * row + i];
+  }
+}
+
 }  // namespace tetwarp

@@ -1,6 +1,7 @@
 /// @file two_level_start.hpp
 /// TwoLevelStart: the contacts of a two-level iteration, and what it starts from.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "host/simulate/solve/problem/contact_constants.hpp"
@@ -22,6 +23,14 @@ struct TwoLevelStart {
 
   /// @param factors  of the elastic bodies; are set to the length of the step
   void set(const SoftProblem& problem, const CompliantLists& lists, RestFactors& factors);
+  /// Takes the preload off impulses, and copies velocities of rows to their blocks.
+  /// @param of_rows   [rows][3]
+  /// @param impulse   in and out, [3 contacts]
+  /// @param velocity  out in the rows of the lists, [block_count]
+  void finish(const CompliantLists& lists,
+              std::span<const double> of_rows,
+              std::vector<double>& impulse,
+              std::vector<Point3>& velocity) const;
 };
 
 }  // namespace tetwarp
