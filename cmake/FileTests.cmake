@@ -16,6 +16,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_bad_files.cpp
     tests/io/test_mesh_arrays.cpp
     tests/io/test_mesh_import.cpp
+    tests/io/test_numbered_files.cpp
     tests/io/test_contact_certified.cpp
     tests/io/test_contact_reference_certified.cpp
     tests/io/test_io_checkpoint.cpp
@@ -131,6 +132,17 @@ tetwarp_add_cli_tests(tetwarp_cli_memory_tests
   tests/cli/test_cli_memory.cpp
   tests/cli/test_cli_memory_peak.cpp)
 tetwarp_discover(tetwarp_cli_memory_tests long)
+
+# ---- live windows -------------------------------------------------------------------------------
+tetwarp_add_cli_tests(tetwarp_view_tests
+  tests/view/test_view_parts.cpp)
+target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_parts)
+tetwarp_discover(tetwarp_view_tests unit)
+if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
+  add_test(NAME window COMMAND ${TETWARP_PYTHON3} -B
+    ${PROJECT_SOURCE_DIR}/tests/view/check_window.py $<TARGET_FILE:tetwarp_command>)
+  set_tests_properties(window PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
+endif()
 
 # ---- the Python package -------------------------------------------------------------------------
 if(TETWARP_HAS_PYTHON)

@@ -16,6 +16,10 @@ if(BUILD_SHARED_LIBS AND TETWARP_IO)  # an installed tree may be moved
   set_target_properties(tetwarp_command PROPERTIES INSTALL_RPATH "$ORIGIN/${tetwarp_lib_from_bin}")
   set_target_properties(tetwarp_read PROPERTIES INSTALL_RPATH "$ORIGIN/${tetwarp_lib_from_reader}")
   set_target_properties(tetwarp_io PROPERTIES INSTALL_RPATH "$ORIGIN")
+  if(TETWARP_HAS_VIEW)
+    set_target_properties(tetwarp_view PROPERTIES
+      INSTALL_RPATH "$ORIGIN/${tetwarp_lib_from_reader}")
+  endif()
 endif()
 
 install(EXPORT tetwarpTargets NAMESPACE tetwarp:: DESTINATION ${tetwarp_package_dir})

@@ -15,7 +15,8 @@ tetwarp_sources(tetwarp_io io/fclib
   contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_left_out.cpp fclib_matrix.cpp
   fclib_numbers.cpp fclib_rows.cpp fclib_write.cpp)
 tetwarp_sources(tetwarp_io io/files
-  extension.cpp finished_file.cpp leftover_files.cpp memory.cpp names.cpp scratch_file.cpp)
+  extension.cpp finished_file.cpp leftover_files.cpp memory.cpp names.cpp numbered_files.cpp
+  scratch_file.cpp sha256.cpp sink_checks.cpp text_file.cpp)
 tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_output.cpp h5_read.cpp h5_rows.cpp h5_write.cpp
   value_names.cpp)
@@ -58,18 +59,20 @@ list(APPEND tetwarp_exported tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png t
 # its private code.
 add_library(tetwarp_reader STATIC)
 tetwarp_sources(tetwarp_reader io/files
-  extension.cpp memory.cpp)
+  extension.cpp memory.cpp numbered_files.cpp)
 tetwarp_sources(tetwarp_reader io/volume
   mesh_arrays.cpp)
 tetwarp_sources(tetwarp_reader io/reader
   mesh_${tetwarp_gmsh}.cpp mesh_readers.cpp mesh_sender.cpp mesh_${tetwarp_vtk}.cpp)
 if(TETWARP_HAS_VTK)
   tetwarp_sources(tetwarp_reader io/reader
-    mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_point_set.cpp)
+    mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_file_list.cpp vtk_point_set.cpp
+    vtk_steps.cpp)
 endif()
 set_target_properties(tetwarp_reader PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_reader PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/io)
-target_link_libraries(tetwarp_reader PUBLIC tetwarp PRIVATE tetwarp_mesh_import tetwarp_options)
+target_link_libraries(tetwarp_reader PUBLIC tetwarp PRIVATE tetwarp_mesh_import tetwarp_options
+  nlohmann_json::nlohmann_json)
 add_executable(tetwarp_read io/reader/main.cpp)
 set_target_properties(tetwarp_read PROPERTIES OUTPUT_NAME tetwarp-read)
 target_link_libraries(tetwarp_read PRIVATE tetwarp_reader tetwarp_options)

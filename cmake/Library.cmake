@@ -50,7 +50,8 @@ tetwarp_sources(tetwarp host/reference/simulate
   nearest_material.cpp prescribed.cpp rigid_mass.cpp shares.cpp springs.cpp step_system.cpp
   system.cpp)
 tetwarp_sources(tetwarp host/reference/warp
-  backend_reference.cpp map_points_reference.cpp overlap.cpp sample.cpp sample_transform.cpp)
+  backend_reference.cpp map_points_reference.cpp nearest_surface.cpp overlap.cpp sample.cpp
+  sample_transform.cpp)
 tetwarp_sources(tetwarp host/scene
   alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp
   lattice_search.cpp marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp
@@ -69,7 +70,7 @@ tetwarp_sources(tetwarp host/simulate/model
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
-  body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
+  added_handles.cpp body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
   fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
   simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
   step_records.cpp tet_energies.cpp)
@@ -99,9 +100,10 @@ tetwarp_sources(tetwarp host/simulate/surfaces
   round_shape.cpp scene_surfaces.cpp surface_motion.cpp)
 tetwarp_sources(tetwarp host/warp
   backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp map_points.cpp
-  point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
+  outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
-  backend_cpu.cpp map_points_cpu.cpp resample.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
+  backend_cpu.cpp map_points_cpu.cpp operator_taps.cpp resample.cpp voxel_places.cpp
+  warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
   row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
   backend_${tetwarp_cuda} device_start_${tetwarp_cuda} map_points_${tetwarp_cuda})

@@ -15,6 +15,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/step/test_model_couplings.cpp
     tests/simulate/step/test_model_masses.cpp
     tests/simulate/step/test_model_rigid.cpp
+    tests/simulate/state/test_added_handles.cpp
+    tests/simulate/state/test_checkpoint_bytes.cpp
     tests/simulate/state/test_simulator_drive.cpp
     tests/simulate/laws/test_simulator_laws.cpp
     tests/simulate/state/test_simulator_records.cpp

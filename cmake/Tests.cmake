@@ -58,16 +58,18 @@ function(tetwarp_add_tests program)
   endif()
 endfunction()
 
-# tetwarp_discover(PROGRAM LABEL): all tests of a program carry the same label. Where they run on
-# a device, those named after back end cuda run one at a time.
+# tetwarp_discover(PROGRAM LABEL): all tests of a program carry the same label, except those of suites
+# named Long..., which have that label. Where they run on a device, those named after back end cuda
+# run one at a time.
 function(tetwarp_discover program label)
-  set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT 300 LABELS ${label})
+  set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES PROPERTIES TIMEOUT 300 LABELS)
+  gtest_discover_tests(${program} TEST_FILTER "Long*" ${options} long)
   if(tetwarp_device_tests)
-    gtest_discover_tests(${program} TEST_FILTER "-*/cuda*:*_cuda" ${options})
-    gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda" ${options} RESOURCE_LOCK gpu)
+    gtest_discover_tests(${program} TEST_FILTER "-Long*:*/cuda*:*_cuda" ${options} ${label})
+    gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda:-Long*" ${options} ${label}
+      RESOURCE_LOCK gpu)
   else()
-    gtest_discover_tests(${program} ${options})
+    gtest_discover_tests(${program} TEST_FILTER "-Long*" ${options} ${label})
   endif()
 endfunction()
 
@@ -158,6 +160,7 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_reference_tests SOURCES
     tests/warp/test_coverage.cpp
+    tests/warp/test_warp_operator.cpp
     tests/warp/test_warp_values.cpp)
   tetwarp_discover(tetwarp_reference_tests reference)
 
@@ -239,6 +242,36 @@ if(NOT BUILD_SHARED_LIBS)
     tetwarp_discover(tetwarp_race_tests simt)
   endif()
 
+  # Kernels whose basic blocks and accesses are counted (tests/emulator/launch_counter.hpp), compiled
+  # to the instructions that have most in common with a device's.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    find_package(fmt REQUIRED)
+    add_library(tetwarp_counted INTERFACE)  # linked last: its options come after all others
+    target_compile_options(tetwarp_counted INTERFACE -O3 -g1 -march=x86-64-v3 -ffp-contract=fast
+      --param=max-completely-peeled-insns=1000 -fno-tree-vectorize -fno-tree-slp-vectorize
+      -fsanitize-coverage=trace-pc -fsanitize=kernel-address -U__SANITIZE_ADDRESS__
+      --param=asan-instrumentation-with-call-threshold=0 --param=asan-stack=0
+      --param=asan-globals=0)
+    target_link_options(tetwarp_counted INTERFACE -no-pie)
+    add_library(tetwarp_launch_counter OBJECT tests/emulator/launch_counter.cpp)
+    tetwarp_test_target(tetwarp_launch_counter)
+    add_library(tetwarp_workloads OBJECT EXCLUDE_FROM_ALL bench/measure/floors.cpp
+      bench/warp/truth.cpp bench/warp/warp_job.cpp bench/warp/workloads.cpp)
+    tetwarp_test_target(tetwarp_workloads tetwarp_hwy fmt::fmt)
+    tetwarp_add_tests(tetwarp_count_tests SOURCES
+      tests/emulated/test_launch_counter.cpp $<TARGET_OBJECTS:tetwarp_launch_counter>)
+    tetwarp_add_tests(tetwarp_step_counts LIBRARIES tetwarp_hwy fmt::fmt SOURCES
+      tests/emulated/step_counts.cpp tests/emulated/emulated_backend.cpp
+      tests/emulated/emulated_primitives.cpp
+      $<TARGET_OBJECTS:tetwarp_launch_counter> $<TARGET_OBJECTS:tetwarp_workloads>)
+    set_target_properties(tetwarp_step_counts PROPERTIES EXCLUDE_FROM_ALL ON)
+    foreach(program tetwarp_count_tests tetwarp_step_counts)
+      target_link_libraries(${program} PRIVATE tetwarp_counted)
+      set_target_properties(${program} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+    endforeach()
+    tetwarp_discover(tetwarp_count_tests simt)
+  endif()
+
   # Every back end through the public calls, compiled once for two programs: in one of them back end
   # cuda is the emulated device, in the other a real one.
   add_library(tetwarp_backend_tests OBJECT
@@ -247,7 +280,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_parity.cpp
     tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
     tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp
-    tests/warp/test_warp_intensity.cpp tests/warp/test_warp_quantities.cpp
+    tests/warp/test_warp_intensity.cpp tests/warp/test_warp_outside.cpp
+    tests/warp/test_warp_quantities.cpp
     tests/warp/test_warp_rounding.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
   set_target_properties(tetwarp_backend_tests PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 5)
@@ -293,9 +327,9 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks choices contact contact_adhesion contact_arrays
+set(tetwarp_public_headers backend blocks camera choices contact contact_adhesion contact_arrays
   contact_problem contact_tracker error make map_points mesh names page_lock report resample scene
-  scene_parts simulate tetwarp version volume warp)
+  scene_parts simulate tetwarp version volume warp warp_operator)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers contact_io io mesh_import point_file scene_io transform_file)
 endif()
@@ -323,6 +357,13 @@ if(TETWARP_PYTHON3)
       ${PROJECT_SOURCE_DIR}/tests/lint/${lint}.py --test)
     set_tests_properties(lint_${lint} PROPERTIES LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
   endforeach()
+endif()
+
+# ---- the cost model of a device's kernels --------------------------------------------------------
+if(TETWARP_PYTHON3)
+  add_test(NAME cost_model
+    COMMAND ${TETWARP_PYTHON3} ${PROJECT_SOURCE_DIR}/bench/sass/cost_model.py --test)
+  set_tests_properties(cost_model PROPERTIES LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
 endif()
 
 # ---- the examples build and run with what was installed ---------------------------------------

@@ -8,6 +8,7 @@ namespace tetwarp::python {
 void bind_contact(nanobind::module_& module);
 void bind_files(nanobind::module_& module);
 void bind_mesh(nanobind::module_& module);
+void bind_operator(nanobind::module_& module);
 void bind_simulate(nanobind::module_& module);
 void bind_volume(nanobind::module_& module);
 void bind_warp(nanobind::module_& module);

@@ -128,6 +128,7 @@ void make_array_warper(ArrayWarper* self,
                        const std::string& intensity,
                        const std::vector<std::string>& quantities,
                        const std::string& outside,
+                       double falloff,
                        double default_value,
                        std::optional<Grid> output_grid,
                        const std::string& backend,
@@ -138,6 +139,7 @@ void make_array_warper(ArrayWarper* self,
                       .antialias = antialias,
                       .intensity = choice<Intensity>("intensity", intensity),
                       .outside = choice<Outside>("outside", outside),
+                      .falloff = falloff,
                       .background = default_value,
                       .output_grid = output_grid,
                       .backend = choice<Backend>("backend", backend),
@@ -155,8 +157,8 @@ void bind_warp(nb::module_& module) {
       .def("__init__", &make_array_warper, nb::arg("sources"), nb::arg("grid"), nb::arg("points"),
            nb::arg("tets"), nb::arg("hexes"), nb::kw_only(), nb::arg("interpolator"),
            nb::arg("overshoot"), nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"),
-           nb::arg("outside"), nb::arg("default_value"), nb::arg("output_grid").none(),
-           nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
+           nb::arg("outside"), nb::arg("falloff"), nb::arg("default_value"),
+           nb::arg("output_grid").none(), nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
       .def_prop_ro("output_grid",
                    [](const ArrayWarper& self) { return self.warper().output_grid(); })
       .def("report", [](const ArrayWarper& self) { return to_json(self.warper().report()); })

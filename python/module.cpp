@@ -40,6 +40,7 @@ NB_MODULE(_core, module) {
   python::bind_volume(module);
   python::bind_mesh(module);
   python::bind_warp(module);
+  python::bind_operator(module);
   python::bind_files(module);
   python::bind_contact(module);
   python::bind_simulate(module);

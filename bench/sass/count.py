@@ -51,7 +51,7 @@ class Kernel:
             base = operation.split(".")[0]
             if base in ("BRA", "EXIT", "RET", "BRX", "WARPSYNC", "BREAK", "BSYNC"):
                 starts.add(n + 1)
-            if base == "BRA":
+            if is_branch(operation):
                 starts.add(place[target_of(operands)])
         order = sorted(s for s in starts if s < len(self.code))
         ends = order[1:] + [len(self.code)]
@@ -62,25 +62,41 @@ class Kernel:
             _, predicate, operation, operands = self.code[block[-1]]
             base = operation.split(".")[0]
             targets = []
-            if base == "BRA":
+            if is_branch(operation):
                 targets.append(number[place[target_of(operands)]])
             always = predicate is None and not re.search(r"\bU?P\d", operands.split("0x")[0])
-            stops = base in ("BRA", "EXIT", "RET") and always
+            stops = (is_branch(operation) or base in ("EXIT", "RET")) and always
             if not stops and b + 1 < len(blocks):
                 targets.append(b + 1)
-            successors.append([t for t in targets if t != b or base == "BRA"])
+            successors.append([t for t in targets if t != b or is_branch(operation)])
         return blocks, successors
+
+
+def is_branch(operation):
+    """BRA.DIV is taken only by warps that diverged before an exchange, which these kernels do not."""
+    return operation.startswith("BRA") and not operation.startswith("BRA.DIV")
 
 
 def target_of(operands):
     return int(re.findall(r"0x([0-9a-f]+)", operands)[-1], 16)
 
 
+def reachable(successors):
+    found, todo = set(), [0]
+    while todo:
+        b = todo.pop()
+        if b not in found:
+            found.add(b)
+            todo += successors[b]
+    return found
+
+
 def dominators(successors):
+    """Of the blocks that the first one leads to."""
     count = len(successors)
     before = [[] for _ in range(count)]
-    for b, targets in enumerate(successors):
-        for t in targets:
+    for b in reachable(successors):
+        for t in successors[b]:
             before[t].append(b)
     found = [set(range(count)) for _ in range(count)]
     found[0] = {0}

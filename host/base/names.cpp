@@ -40,7 +40,9 @@ constexpr EnumName<Intensity> words<Intensity>[] = {{Intensity::value, "value"},
                                                     {Intensity::conservative, "conservative"}};
 template <>
 constexpr EnumName<Outside> words<Outside>[] = {{Outside::background, "background"},
-                                                {Outside::identity, "identity"}};
+                                                {Outside::identity, "identity"},
+                                                {Outside::nearest, "nearest"},
+                                                {Outside::falloff, "falloff"}};
 template <>
 constexpr EnumName<Deformation> words<Deformation>[] = {
     {Deformation::twist, "twist"},   {Deformation::bend, "bend"},

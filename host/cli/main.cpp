@@ -39,6 +39,7 @@ void declare(CLI::App& app, Run& run) {
   app.require_subcommand(1);
   add_warp_command(app, run);
   add_simulate_command(app, run);
+  add_view_command(app, run);
   add_contact_command(app, run);
   add_mesh_command(app, run);
   add_deform_command(app, run);

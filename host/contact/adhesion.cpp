@@ -2,10 +2,10 @@
 /// evolve_adhesion() and evolve(): checks of arguments, and the stage "adhesion" on the host or on
 /// a device.
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/contact.hpp>
-#include <utility>
 #include <vector>
 
 #include "host/base/vector_view.hpp"
@@ -98,6 +98,45 @@ void check_arrays(const ContactArrays& arrays,
   check("adhesion.bonding_rate", adhesion.bonding_rate, contacts, true);
   check("adhesion.saturation_pressure", adhesion.saturation_pressure, contacts, true);
 }
+
+template <class T>
+View<const double> numbers_of(const T& values) {
+  return view_of(std::span<const double>(values));
+}
+
+/// @param springs  time_step, area, stiffness, tangential_stiffness, intensity and gap
+/// @param rates    energy, viscosity, bonding_rate and saturation_pressure
+template <class Springs, class Rates>
+ContactAdhesionOp adhesion_op(const Springs& springs,
+                              const Rates& rates,
+                              View<const double> impulse,
+                              View<const double> velocity,
+                              const EvolutionOptions& options) {
+  ContactAdhesionOp op{};
+  op.in = {.time_step = springs.time_step,
+           .area = numbers_of(springs.area),
+           .stiffness = numbers_of(springs.stiffness),
+           .tangential_stiffness = numbers_of(springs.tangential_stiffness),
+           .intensity = numbers_of(springs.intensity),
+           .gap = numbers_of(springs.gap),
+           .energy = numbers_of(rates.energy),
+           .viscosity = numbers_of(rates.viscosity),
+           .bonding_rate = numbers_of(rates.bonding_rate),
+           .saturation_pressure = numbers_of(rates.saturation_pressure),
+           .impulse = impulse,
+           .velocity = velocity};
+  op.euler = options.integrator == AdhesionIntegrator::explicit_euler;
+  op.debond_gap_factor = options.debond_gap_factor;
+  op.debond_intensity = options.debond_intensity;
+  return op;
+}
+
+/// On a device, or on this thread if there is none.
+void run_adhesion(const ContactAdhesionOp& op, ContactDevice* device) {
+  if (device != nullptr) return device->evolve(op);
+  CpuExec exec(1, StageClocks::off);
+  contact_adhesion(exec, op);
+}
 }  // namespace
 
 AdhesionStep evolve_adhesion(const ContactProblem& problem,
@@ -122,33 +161,12 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
   std::vector<double> velocity = solution.velocity;
   const std::vector<double> offsets = normal_offsets(problem);
   for (std::size_t c = 0; c < offsets.size(); ++c) velocity[3 * c] += offsets[c];
-  const AdhesionViews views{.time_step = adhesion.time_step,
-                            .area = view_of(adhesion.area),
-                            .stiffness = view_of(adhesion.stiffness),
-                            .tangential_stiffness = view_of(adhesion.tangential_stiffness),
-                            .intensity = view_of(adhesion.intensity),
-                            .gap = view_of(adhesion.gap),
-                            .energy = view_of(adhesion.energy),
-                            .viscosity = view_of(adhesion.viscosity),
-                            .bonding_rate = view_of(adhesion.bonding_rate),
-                            .saturation_pressure = view_of(adhesion.saturation_pressure),
-                            .impulse = view_of(solution.impulse),
-                            .velocity = view_of(std::as_const(velocity))};
-  const ContactAdhesionOp body = {
-      .in = views,
-      .euler = options.integrator == AdhesionIntegrator::explicit_euler,
-      .debond_gap_factor = options.debond_gap_factor,
-      .debond_intensity = options.debond_intensity,
-      .next_intensity = view_of(step.intensity),
-      .next_gap = view_of(step.gap),
-      .debonded = {step.debonded.data(), problem.contact_count()},
-  };
-  if (device != nullptr) {
-    device->evolve(body);
-  } else {
-    CpuExec exec(1, StageClocks::off);
-    contact_adhesion(exec, body);
-  }
+  ContactAdhesionOp op =
+      adhesion_op(adhesion, adhesion, numbers_of(solution.impulse), numbers_of(velocity), options);
+  op.next_intensity = view_of(step.intensity);
+  op.next_gap = view_of(step.gap);
+  op.debonded = {step.debonded.data(), problem.contact_count()};
+  run_adhesion(op, device);
   return step;
 }
 
@@ -159,36 +177,14 @@ void ContactSolver::evolve(const ContactArrays& arrays,
   ContactDevice* const device = state_->device.get();
   check_evolution(options);
   check_arrays(arrays, solution, adhesion, device);
-  const AdhesionViews views{.time_step = arrays.time_step,
-                            .area = view_of(arrays.area),
-                            .stiffness = view_of(arrays.stiffness),
-                            .tangential_stiffness = view_of(arrays.tangential_stiffness),
-                            .intensity = view_of(arrays.intensity),
-                            .gap = view_of(arrays.gap),
-                            .energy = view_of(adhesion.energy),
-                            .viscosity = view_of(adhesion.viscosity),
-                            .bonding_rate = view_of(adhesion.bonding_rate),
-                            .saturation_pressure = view_of(adhesion.saturation_pressure),
-                            .impulse = view_of(std::span<const double>(solution.impulse)),
-                            .velocity = view_of(std::span<const double>(solution.velocity)),
-                            .velocity_offset = view_of(arrays.velocity_offset)};
-  const ContactAdhesionOp body = {
-      .in = views,
-      .euler = options.integrator == AdhesionIntegrator::explicit_euler,
-      .debond_gap_factor = options.debond_gap_factor,
-      .debond_intensity = options.debond_intensity,
-      .next_intensity = view_of(adhesion.intensity),
-      .next_gap = view_of(adhesion.gap),
-      .debonded = view_of(adhesion.debonded),
-  };
-  if (arrays.memory == Memory::device) {
-    device->evolve_resident(body, solution.stream);
-  } else if (device != nullptr) {
-    device->evolve(body);
-  } else {
-    CpuExec exec(1, StageClocks::off);
-    contact_adhesion(exec, body);
-  }
+  ContactAdhesionOp op = adhesion_op(arrays, adhesion, numbers_of(solution.impulse),
+                                     numbers_of(solution.velocity), options);
+  op.in.velocity_offset = view_of(arrays.velocity_offset);
+  op.next_intensity = view_of(adhesion.intensity);
+  op.next_gap = view_of(adhesion.gap);
+  op.debonded = view_of(adhesion.debonded);
+  if (arrays.memory == Memory::device) return device->evolve_resident(op, solution.stream);
+  run_adhesion(op, device);
 }
 
 }  // namespace tetwarp

@@ -65,7 +65,7 @@ class Picture {
         view_(options.camera, samples * options.width, samples * options.height),
         up_(unit(options.camera.up)),
         target_(options.camera.target),
-        extent_(extent(options.camera)),
+        extent_(height_at_target(options.camera)),
         light_(unit(
             plus(times(1.1, up_), plus(times(-0.5, view_.forward), times(-0.55, view_.right))))),
         fill_(unit(plus(times(0.1, up_), plus(times(-1, view_.forward), times(0.8, view_.right))))),
@@ -104,9 +104,8 @@ class Picture {
   }
 
  private:
-  double extent(const Camera& camera) const {
-    const double size = norm(minus(soup_.high, soup_.low));
-    return size > 0 ? size : norm(minus(camera.target, camera.eye));
+  static double height_at_target(const Camera& camera) {
+    return 2 * std::tan(0.5 * camera.angle) * norm(minus(camera.target, camera.eye));
   }
 
   Rgb background(int y) const {
@@ -158,7 +157,7 @@ class Picture {
   SurfaceSoup soup_;
   PictureView view_;
   Point3 up_, target_;
-  double extent_;  ///< of the scene
+  double extent_;  ///< height of what the picture shows at the target: pictures of a film share it
   Point3 light_, fill_;
   ShadowMap shadow_;
   std::vector<Rgb> colors_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/camera.hpp>
 #include <tetwarp/export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/volume.hpp>
@@ -126,14 +127,6 @@ struct DrawnSurface {
 struct DrawnPlane {
   Point3 point{0, 0, 0};
   Point3 normal{0, 0, 1};  ///< of any length above 0
-};
-
-/// A perspective view. The eye and the target differ, and `up` is not along their line.
-struct Camera {
-  Point3 eye{0, -1, 0};
-  Point3 target{0, 0, 0};  ///< shown in the middle
-  Point3 up{0, 0, 1};      ///< shown upwards
-  double angle = 0.5;      ///< of view from the bottom to the top of the picture, 0 to pi [rad]
 };
 
 /// A view from the front, the right and above in which all points are seen.

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include <tetwarp/camera.hpp>
 #include <tetwarp/export.hpp>
 #include <tetwarp/scene_parts.hpp>
 
@@ -124,6 +125,8 @@ struct Scene {
   SceneContact contact = {};
   SceneSolver solver = {};
   SceneOutput output = {};
+  /// From where pictures show it, if they are not told otherwise; of no effect on the motion.
+  std::optional<Camera> camera = {};
   /// What reading its files has merged, a line for each file; of no effect.
   std::vector<std::string> notes = {};
 

@@ -151,6 +151,19 @@ struct BodyMesh {
   std::vector<double> shear_modulus;     ///< fem: mu of each tetrahedron [Pa]
 };
 
+/// A handle that a running simulation gets: springs between anchors and the nodes of a body near a
+/// place, or between an anchor and the point of a rigid body at that place.
+struct PointHandle {
+  std::string name = {};   ///< no handle of the scene has it
+  std::string body = {};   ///< not scripted
+  Point3 center{0, 0, 0};  ///< [world, now]
+  double radius = 0;       ///< nodes up to so far from the center, or else the nearest one [m]
+  double stiffness = 0;    ///< in total [N/m]
+  double damping = 0;      ///< in total [N s/m]
+
+  bool operator==(const PointHandle&) const = default;
+};
+
 /// Advances a scene. Public calls of one object must not overlap.
 class TETWARP_EXPORT Simulator {
  public:
@@ -201,6 +214,11 @@ class TETWARP_EXPORT Simulator {
   void move_handle(const std::string& name, const Point3& displacement);
   /// The springs of a handle let go, until it is moved again.
   void release_handle(const std::string& name);
+  /// Adds a handle, whose anchors start where its points are now. move_handle() and
+  /// release_handle() take its name, and scene() lists it; one of the same name that was added
+  /// before is replaced. A checkpoint has it. Costs about as much as restore().
+  /// @throws std::invalid_argument  naming the member, and for the back end reference
+  void add_handle(const PointHandle& handle);
   /// The pose of a scripted body or obstacle relative to its start, instead of its path, from the
   /// next step on; axis_angle turns about its origin.
   void move_script(const std::string& name, const Point3& displacement, const Point3& axis_angle);

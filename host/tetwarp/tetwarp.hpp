@@ -3,6 +3,7 @@
 #pragma once
 #include <tetwarp/backend.hpp>
 #include <tetwarp/blocks.hpp>
+#include <tetwarp/camera.hpp>
 #include <tetwarp/choices.hpp>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/contact_analysis.hpp>
@@ -23,3 +24,4 @@
 #include <tetwarp/version.hpp>
 #include <tetwarp/volume.hpp>
 #include <tetwarp/warp.hpp>
+#include <tetwarp/warp_operator.hpp>

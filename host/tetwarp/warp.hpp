@@ -43,10 +43,25 @@ enum class Intensity {
 };
 
 /// The value of output voxels that no tetrahedron covers.
+///
+/// `nearest` and `falloff` take the displacement (rest minus deformed position) of the nearest
+/// point of the deformed mesh's surface: the triangles that one tetrahedron alone has, those into
+/// which hexahedra are split included, on which it is linear. They are for samples that stay as
+/// they are: Intensity::value and Quantity::components, and need the whole mesh: no SourceWindow.
+/// Samples outside of the mesh are not averaged then, and their Jacobian, gradient and strain are
+/// zero, but FieldTarget::displacement holds the displacement.
 enum class Outside {
   background,  ///< WarpOptions::background
-  identity     ///< the source at the same world position
+  identity,    ///< the source at the same world position
+  nearest,     ///< the source where that displacement leads
+  falloff      ///< the same with the displacement times 1 - t^2 (3 - 2 t), t = distance from the
+               ///< surface over WarpOptions::falloff; from t = 1 on as identity
 };
+
+/// Whether displacements go on outside of the mesh.
+constexpr bool extends(Outside outside) {
+  return outside == Outside::nearest || outside == Outside::falloff;
+}
 
 /// Work that is skipped because it cannot change the result. The output bits do not depend on it
 /// (except the quiet bit of signaling NaNs, which interpolation sets and copying keeps).
@@ -97,6 +112,7 @@ struct WarpOptions {
   Intensity intensity = Intensity::value;
   std::vector<Quantity> quantities = {};  ///< one per source; empty: components
   Outside outside = Outside::background;
+  double falloff = 0.0;                  ///< of Outside::falloff, above 0 [world]
   double background = 0.0;               ///< rounded to the pixel type, saturated at its limits
   std::optional<Grid> output_grid = {};  ///< nothing: the grid of the sources
   std::optional<Region> region = {};     ///< part of the output grid to compute; nothing: all
@@ -119,7 +135,8 @@ struct WarpOptions {
 using Progress = std::function<bool(double fraction)>;
 
 /// Arrays for fields of the deformation, float32 in world axes, [k][j][i][component] over
-/// Warper::output_grid(); null: not computed. All are zero where no tetrahedron covers the voxel.
+/// Warper::output_grid(); null: not computed. All are zero where no tetrahedron covers the voxel,
+/// but see Outside.
 struct FieldTarget {
   /// 3 components, backward: rest position of the material at the voxel minus the voxel's position.
   /// The displacement field by which other programs resample.

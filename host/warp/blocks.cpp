@@ -123,14 +123,14 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
   const std::int64_t tet_count = std::ssize(mesh.tets);
   const View<const Node> rest{geometry.rest.data(), std::ssize(geometry.rest)};
   const std::int32_t* const ids = mesh.tets.front().data();
-  TetSetupOp body{};
-  body.tets = {ids, 4 * tet_count};
-  body.deformed = {nodes.data(), std::ssize(nodes)};
-  body.rest = rest;
-  body.rest_orientation = {geometry.rest_orientation.data(), tet_count};
-  body.frame = geometry.frame;
+  TetSetupOp op{};
+  op.tets = {ids, 4 * tet_count};
+  op.deformed = {nodes.data(), std::ssize(nodes)};
+  op.rest = rest;
+  op.rest_orientation = {geometry.rest_orientation.data(), tet_count};
+  op.frame = geometry.frame;
   if (!mesh.hexes.empty()) {
-    body.hexes = {{mesh.hexes.front().data(), 8 * std::ssize(mesh.hexes)}, lone_tet_count()};
+    op.hexes = {{mesh.hexes.front().data(), 8 * std::ssize(mesh.hexes)}, lone_tet_count()};
   }
   // An average takes samples up to half an output voxel away on either side.
   const double spread = options.antialias ? 0.5 : 0;
@@ -138,7 +138,7 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
   std::atomic<std::int64_t> inverted = 0, flat = 0, bad = tet_count;
   parallel_for(thread_count(options.threads), tet_count, [&](std::int64_t t) {
     TetSetup setup = {};
-    const TetClass tet_class = body.set_up(t, setup);
+    const TetClass tet_class = op.set_up(t, setup);
     inverted += tet_class == TetClass::inverted;
     flat += tet_class == TetClass::flat;
     if (tet_class == TetClass::bad_position || tet_class == TetClass::too_large) {
@@ -151,7 +151,7 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
   });
   if (bad < tet_count) {
     TetSetup setup = {};
-    throw_on_bad_position(body.set_up(bad, setup), bad);
+    throw_on_bad_position(op.set_up(bad, setup), bad);
   }
   plan.tetrahedra = tet_count;
   plan.inverted = inverted;

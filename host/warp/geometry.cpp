@@ -28,7 +28,7 @@ OutsideMap make_outside_map(const WarpPlan& plan, const OutputFrame& frame) {
   OutsideMap outside = {};
   if (plan.options.outside == Outside::background) return outside;
   const IndexMap map = source_from_output(plan.sources.front().grid, plan.output_grid);
-  outside.use_source = true;
+  outside.use_source = plan.options.outside == Outside::identity;
   outside.is_copy = map.linear == std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (std::size_t row = 0; row < 3; ++row) {
     outside.offset[row] = map.offset[row];

@@ -33,15 +33,15 @@ class GridPointMasks {
   MaskVerdict<Offsets> run(View<const TetSetup> setups, const Offsets& pair_offsets) {
     const std::int64_t tets = setups.size;
     const View<std::int64_t> counts = counts_.view(tets + 1);
-    const CornerCountOp<Offsets> body{setups, pair_offsets, counts};
+    const CornerCountOp<Offsets> op{setups, pair_offsets, counts};
     Offsets offsets;
     if constexpr (Exec::reads_are_free) {
-      exec_.for_each("warp/mask", tets, body);
+      exec_.for_each("warp/mask", tets, op);
       exec_.exclusive_scan("warp/mask", counts);
       offsets = counts;
     } else {
       offsets = {counts, groups_.view(group_count(tets) + 1), tets + 1};
-      exec_.grouped_scan("warp/mask", tets, body, offsets);
+      exec_.grouped_scan("warp/mask", tets, op, offsets);
     }
     corner_mask(exec_, setups, offsets, masks_.view(mask_count_));
     return {offsets, masks_.const_view(mask_count_)};

@@ -31,6 +31,7 @@ class WarpOutputs {
       : exec_(exec),
         frame_(frame),
         volume_count_(plan.sources.size()),
+        always_owns_(extends(plan.options.outside)),
         voxel_bytes_(voxel_bytes_of(plan.sources)) {
     for (Slot& slot : slots_) slot.arrays.resize(voxel_bytes_.size());
   }
@@ -60,13 +61,13 @@ class WarpOutputs {
   /// Where an executor writes volume s.
   void* volume(std::size_t s, const WarpTarget& target) { return writable(s, target); }
   /// Where it writes the other arrays; null: not written. Owners have memory also when only a field
-  /// that is computed from them is written.
+  /// or voxels outside are computed from them.
   WarpTarget extra(const WarpTarget& target) {
     WarpTarget arrays;
     for (std::size_t e = 0; e < extra_outputs.size(); ++e) {
       extra_outputs[e].set(arrays, writable(volume_count_ + e, target));
     }
-    if (target.owner == nullptr && needs_owners(target.fields)) {
+    if (target.owner == nullptr && (always_owns_ || needs_owners(target.fields))) {
       const std::size_t place = volume_count_ + owner_output;
       const std::int64_t bytes = voxel_bytes_[place] * frame_.voxel_count();
       Buffer<std::byte>& own = slots_[now_].arrays[place];
@@ -170,6 +171,7 @@ class WarpOutputs {
   Exec& exec_;
   const OutputFrame& frame_;
   std::size_t volume_count_;
+  bool always_owns_;
   std::vector<std::int64_t> voxel_bytes_;  ///< per array of a target
   Slot slots_[2];
   int now_ = 0;  ///< slot of the current step

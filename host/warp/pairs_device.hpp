@@ -98,7 +98,7 @@ class DevicePairs : public PairState<Exec> {
   void begin(View<const double> positions, bool has_before) {
     const auto& origin = geometry_.frame.origin;
     const std::int64_t kept = is_update_ ? kept_words : 0;
-    const StepBeginOp body{
+    const StepBeginOp op{
         {geometry_.output_index,
          {origin[0], origin[1], origin[2]},
          positions,
@@ -107,7 +107,7 @@ class DevicePairs : public PairState<Exec> {
         node_moved_.view(has_before ? mesh_.node_count() : 0),
         {reinterpret_cast<std::int64_t*>(this->counters()) + kept, memory_words - kept},
         cell_counts_.view(is_update_ ? 0 : this->cell_count())};
-    exec_.for_each("warp/setup", body.size(), body);
+    exec_.for_each("warp/setup", op.size(), op);
   }
 
   /// Setup of the tetrahedra, and the sums of their candidate pairs.

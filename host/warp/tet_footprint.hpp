@@ -126,6 +126,7 @@ inline Footprint footprint_of(const Footprint* parts, const HexCorners& rest) {
     }
   }
   if (all.begin[0] >= all.end[0]) return Footprint{};
+  const HexTerms terms = hex_terms(rest);
   double low[3] = {0x1p40, 0x1p40, 0x1p40}, high[3] = {-0x1p40, -0x1p40, -0x1p40};
   for (int a = 0; a < 8; ++a) {
     double u[3], x[3];
@@ -133,7 +134,7 @@ inline Footprint footprint_of(const Footprint* parts, const HexCorners& rest) {
     for (int axis = 0; axis < 3; ++axis) {
       u[axis] = unit_corner(a, axis) != 0 ? 1 + hex_margin : -hex_margin;
     }
-    map_hex(rest, u, x, gradient);
+    map_hex(terms, u, x, gradient);
     for (int axis = 0; axis < 3; ++axis) {
       low[axis] = std::min(low[axis], x[axis]);
       high[axis] = std::max(high[axis], x[axis]);

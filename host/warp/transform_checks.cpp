@@ -59,7 +59,7 @@ void check_conservative(const WarpOptions& options) {
   const char* wrong = nullptr;
   if (options.antialias) wrong = "means are exact without antialias";
   if (options.background != 0) wrong = "the background must be 0";
-  if (options.outside == Outside::identity) wrong = "outside must be background";
+  if (options.outside != Outside::background) wrong = "outside must be background";
   for (const Quantity quantity : options.quantities) {
     if (quantity != Quantity::components) wrong = "vectors and tensors take density";
   }
@@ -67,7 +67,41 @@ void check_conservative(const WarpOptions& options) {
     throw std::invalid_argument(std::string("intensity: to keep the total, ") + wrong);
   }
 }
+
+/// Rejects what the derivative of a displacement outside of the mesh would change.
+void check_outside(const WarpOptions& options) {
+  if (options.outside == Outside::falloff &&
+      !(std::isfinite(options.falloff) && options.falloff > 0)) {
+    throw std::invalid_argument("falloff: expected a finite distance above 0");
+  }
+  if (!extends(options.outside)) return;
+  if (options.intensity != Intensity::value) {
+    throw std::invalid_argument(std::string("outside: ") + name_of(options.outside) +
+                                " is for values, not for densities; use background or identity");
+  }
+  for (const Quantity quantity : options.quantities) {
+    if (quantity == Quantity::components) continue;
+    throw std::invalid_argument(std::string("outside: ") + name_of(options.outside) +
+                                " turns no vectors and tensors; use background or identity");
+  }
+}
 }  // namespace
+
+void check_sources(std::span<const VolumeView> sources, const std::string& what_to_do) {
+  if (sources.empty()) throw std::invalid_argument("sources: no volume");
+  for (const VolumeView& source : sources) {
+    check_grid(source.grid, "source");
+    if (source.grid != sources.front().grid) {
+      throw std::invalid_argument("sources: volumes on different grids; " + what_to_do +
+                                  " them one by one");
+    }
+    if (source.components < 1 || source.components > 9) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, expected 1 to 9");
+    }
+    if (source.data == nullptr) throw std::invalid_argument("source: no samples");
+  }
+}
 
 void check_source_transform(const VolumeView& source,
                             Quantity quantity,
@@ -99,6 +133,7 @@ void check_transforms(std::span<const VolumeView> sources, const WarpOptions& op
                                 std::to_string(options.quantities.size()));
   }
   if (options.intensity == Intensity::conservative) check_conservative(options);
+  check_outside(options);
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const Quantity quantity =
         options.quantities.empty() ? Quantity::components : options.quantities[s];

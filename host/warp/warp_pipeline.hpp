@@ -8,6 +8,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/warp/cell_raster_stage.hpp"
 #include "host/warp/counter_totals.hpp"
+#include "host/warp/extension.hpp"
 #include "host/warp/fields.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/outputs.hpp"
@@ -40,6 +41,7 @@ class WarpPipeline : public WarpBackend {
         sources_(exec_, plan_),
         totals_(exec_, plan_, geometry_),
         roundings_(exec_, plan_, geometry_),
+        extension_(exec_, plan_, geometry_),
         counter_totals_(exec_, geometry_.frame.cell_count()) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
@@ -158,7 +160,9 @@ class WarpPipeline : public WarpBackend {
     pairs_.run(positions);
     transforms_.run(pairs_);
     stale_ = {};
-    if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
+    // Voxels outside depend on the whole surface.
+    if (age > 0 && !extension_.is_requested() && pairs_.are_updates(age))
+      stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
     const WarpTarget extra = outputs_.extra(target);
     const StepShares shares(plan_, extra.fields);
@@ -168,6 +172,7 @@ class WarpPipeline : public WarpBackend {
     const View<std::int32_t> owners{extra.owner,
                                     extra.owner != nullptr ? geometry_.frame.voxel_count() : 0};
     fields_.run(pairs_, owners, stale_, extra.fields);
+    if (extension_.is_requested()) extend(target, owners, extra.fields.displacement);
     voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
   }
 
@@ -178,12 +183,35 @@ class WarpPipeline : public WarpBackend {
         pairs_.is_update() ? pairs_.touched() : View<const std::uint8_t>{};
     const View<std::int64_t> folded{&pairs_.counters()->mesh.folded, 1};
     const auto count = [&](View<const Node> nodes, const PairList& list, std::int64_t weight) {
-      const VoxelFoldOp body = {pairs_.tets(),   nodes,  list,  touched,
-                                geometry_.frame, folded, weight};
-      exec_.for_each("warp/fold", geometry_.frame.voxel_count(), body);
+      const VoxelFoldOp op = {pairs_.tets(), nodes, list, touched, geometry_.frame, folded, weight};
+      exec_.for_each("warp/fold", geometry_.frame.voxel_count(), op);
     };
     if (pairs_.is_update()) count(pairs_.nodes_before(), pairs_.list_before(), -1);
     count(pairs_.nodes(), pairs_.list(), 1);
+  }
+
+  /// Voxels that no tetrahedron covers, of all sources.
+  void extend(const WarpTarget& target, View<const std::int32_t> owners, float* displacement) {
+    extension_.run(pairs_);
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
+        RasterJob<T> job{};
+        set_samples(s, outputs_.volume(s, target), job);
+        extension_.write(job, owners, s == 0 ? displacement : nullptr);
+      });
+    }
+  }
+
+  /// What stages need to sample source s.
+  template <class T>
+  void set_samples(std::size_t s, void* volume, RasterJob<T>& job) {
+    job.frame = geometry_.frame;
+    job.source = sources_.template view<T>(s);
+    job.filter = plan_.options.filter;
+    job.outside = geometry_.outside;
+    job.background = rounded_to<T>(plan_.options.background);
+    job.copy_whole_shifts = plan_.options.expert.skip.copied_voxels;
+    job.volume = static_cast<T*>(volume);
   }
 
   /// Owners and samples of source s.
@@ -200,13 +228,7 @@ class WarpPipeline : public WarpBackend {
       job.pairs = pairs_.list().pairs;
       job.ranges = {pairs_.list().ranges.data, frame.cell_count()};
       job.usual_pairs = pairs_.usual_pairs();
-      job.frame = frame;
-      job.source = sources_.template view<T>(s);
-      job.filter = plan_.options.filter;
-      job.outside = geometry_.outside;
-      job.background = rounded_to<T>(plan_.options.background);
-      job.copy_whole_shifts = plan_.options.expert.skip.copied_voxels;
-      job.volume = static_cast<T*>(volume);
+      set_samples(s, volume, job);
       // Mask, owners and counts are the same for all sources.
       job.mask = s == 0 ? extra.mask : nullptr;
       job.tet = s == 0 ? extra.owner : nullptr;
@@ -240,37 +262,37 @@ class WarpPipeline : public WarpBackend {
   /// Averages over the voxels' boxes; for the first source after a raster of mask and owners.
   template <class T>
   void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
-    VoxelOverlapOp body = {job.setups,
-                           job.tets,
-                           job.transforms,
-                           pairs_.list(),
-                           job.cell_work,
-                           job.frame,
-                           number_view(job.source.data),
-                           {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
-                           job.source.components,
-                           roundings_.begin(s, job.cell_work, number_view(job.volume))};
+    VoxelOverlapOp op = {job.setups,
+                         job.tets,
+                         job.transforms,
+                         pairs_.list(),
+                         job.cell_work,
+                         job.frame,
+                         number_view(job.source.data),
+                         {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
+                         job.source.components,
+                         roundings_.begin(s, job.cell_work, number_view(job.volume))};
     job.filter = Filter::nearest;
     job.transforms = {};
     constexpr double raster = 0.01;  // of the time of this source
     if (s == 0) cell_raster(exec_, job, part_of(progress, 0, raster));
-    overlap_in_batches(exec_, body, part_of(progress, s == 0 ? raster : 0, 1));
+    overlap_in_batches(exec_, op, part_of(progress, s == 0 ? raster : 0, 1));
     roundings_.sum(s);
   }
 
   /// Finds the cells to keep and the cells to fill with one value; the others are sampled.
   template <class T>
   CellWorkOp<T> work_of_cells(std::size_t s, const RasterJob<T>& job) {
-    CellWorkOp<T> body = {job, {}, stale_, {}, {}};
+    CellWorkOp<T> op = {job, {}, stale_, {}, {}};
     if (plan_.options.expert.skip.constant_cells && job.transforms.size == 0) {
-      body.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
+      op.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
     }
-    if (stale_.size == 0 && body.uniform.reach.size == 0) return body;
-    body.work = cell_work_.view(geometry_.frame.cell_count());
-    body.job.cell_work = {body.work.data, body.work.size};
-    body.constant_count = {pairs_.counters()->spread.constant_cells,
-                           s == 0 ? SpreadCounts::places : 0};
-    return body;
+    if (stale_.size == 0 && op.uniform.reach.size == 0) return op;
+    op.work = cell_work_.view(geometry_.frame.cell_count());
+    op.job.cell_work = {op.work.data, op.work.size};
+    op.constant_count = {pairs_.counters()->spread.constant_cells,
+                         s == 0 ? SpreadCounts::places : 0};
+    return op;
   }
 
   /// Records a computed step for the next one. @returns its report without times
@@ -297,6 +319,7 @@ class WarpPipeline : public WarpBackend {
   WarpSources<Exec> sources_;
   WarpTotals<Exec> totals_;
   WarpRoundings<Exec> roundings_;
+  WarpExtension<Exec> extension_;
   CounterTotals<Exec> counter_totals_;
   CellRaster<Exec> cell_raster_;
   Flight flights_[2];

@@ -52,23 +52,12 @@ void check_window(const std::vector<VolumeView>& sources, const WarpOptions& opt
   if (options.intensity == Intensity::conservative) {
     throw std::invalid_argument("source window: conservative needs the whole source; use density");
   }
-  if (options.overshoot == Overshoot::clamp) check_ranges(sources, options.source_window->ranges);
-}
-
-void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& options) {
-  if (sources.empty()) throw std::invalid_argument("sources: no volume");
-  for (const VolumeView& source : sources) {
-    check_grid(source.grid, "source");
-    if (source.grid != sources.front().grid) {
-      throw std::invalid_argument("sources: volumes on different grids; warp them one by one");
-    }
-    if (source.components < 1 || source.components > 9) {
-      throw std::invalid_argument("source: " + std::to_string(source.components) +
-                                  " components, expected 1 to 9");
-    }
-    if (source.data == nullptr) throw std::invalid_argument("source: no samples");
+  if (extends(options.outside)) {
+    throw std::invalid_argument(
+        std::string("source window: outside ") + name_of(options.outside) +
+        " takes displacements from the whole mesh; use background or identity");
   }
-  check_window(sources, options);
+  if (options.overshoot == Overshoot::clamp) check_ranges(sources, options.source_window->ranges);
 }
 
 WarpPlan make_plan(std::span<const VolumeView> sources,
@@ -77,7 +66,8 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   WarpPlan plan;
   plan.sources.assign(sources.begin(), sources.end());
   plan.options = options;
-  check_sources(plan.sources, options);
+  check_sources(plan.sources, "warp");
+  check_window(plan.sources, options);
   check_transforms(plan.sources, options);
   check_mesh(mesh);
   plan.mesh = with_split_hexes(mesh);

@@ -7,16 +7,14 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "io/files/extension.hpp"
 #include "io/files/finished_file.hpp"
 #include "io/files/scratch_file.hpp"
+#include "io/files/sink_checks.hpp"
 #include "io/image/meta_header.hpp"
 #include "io/image/nrrd_header.hpp"
 #include "io/nifti/nifti_components.hpp"
@@ -92,11 +90,7 @@ class ImageSink : public VolumeSink {
     }
   }
 
-  [[noreturn]] void fail() const {
-    throw IoError(path_, "",
-                  std::string("cannot be written: ") + std::strerror(errno) +
-                      "; check the free space of the disk");
-  }
+  [[noreturn]] void fail() const { throw_disk_error(path_); }
   [[noreturn]] void refuse_steps() const {
     throw IoError(path_, "", "holds no steps; write .nii.gz or .vtkhdf");
   }
@@ -162,18 +156,9 @@ std::unique_ptr<VolumeSink> make_image_sink(const std::string& path,
                                             const std::vector<ArrayHeader>& arrays,
                                             const VolumeWriteOptions& options,
                                             bool is_temporal) {
-  if (arrays.size() != 1) {
-    throw IoError(path, "",
-                  "an image of this format holds one array, not " + std::to_string(arrays.size()) +
-                      "; write a VTKHDF file");
-  }
+  const ArrayHeader& array = only_array(path, "an image of this format", grid, arrays);
   if (is_temporal) throw IoError(path, "", "holds no steps; write .nii.gz or .vtkhdf");
-  try {
-    check_grid(grid, "grid");
-  } catch (const std::invalid_argument& error) {
-    throw IoError(path, "", error.what());
-  }
-  return std::make_unique<ImageSink>(path, grid, arrays.front(), options);
+  return std::make_unique<ImageSink>(path, grid, array, options);
 }
 
 }  // namespace tetwarp

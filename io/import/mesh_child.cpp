@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/files/memory.hpp"
+#include "io/files/numbered_files.hpp"
 #include "io/import/child_message.hpp"
 #include "io/import/child_process.hpp"
 
@@ -74,10 +75,9 @@ void run_reader(const std::string& path,
 }  // namespace
 
 ChildLimits limits_for(const std::string& path, double time) {
-  std::error_code error;
-  const auto bytes = static_cast<double>(fs::file_size(path, error));
-  const double seconds = 120 + (error ? 0 : 5e-6 * bytes);
-  const double memory = 0x1p32 + (error ? 0 : 1000 * bytes);
+  const double bytes = bytes_of_files(path);
+  const double seconds = 120 + 5e-6 * bytes;
+  const double memory = 0x1p32 + 1000 * bytes;
   return {time > 0 ? time : seconds, std::min(memory, available_memory())};
 }
 

@@ -60,7 +60,8 @@ void exchange_members(Message& message, Value& value) {
 template <class Message>
 void exchange_members(Message& message, ImportedMesh& value) {
   // All members: a new one does not compile.
-  auto& [mesh, displacements, times, skipped, arrays, left_out, merged, triangles] = value;
+  auto& [mesh, displacements, times, skipped, arrays, left_out, merged, triangles, moves_points] =
+      value;
   auto& [rest_positions, tets, hexes] = mesh;
   message(rest_positions);
   message(tets);
@@ -72,6 +73,7 @@ void exchange_members(Message& message, ImportedMesh& value) {
   message(left_out);
   message(merged);
   message(triangles);
+  message(moves_points);
 }
 
 }  // namespace tetwarp

@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -16,6 +13,8 @@
 
 #include "host/base/point3.hpp"
 #include "io/files/extension.hpp"
+#include "io/files/numbered_files.hpp"
+#include "io/files/text_file.hpp"
 #include "io/h5/value_names.hpp"
 #include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"
@@ -114,7 +113,9 @@ void check_imported(const std::string& path, ImportedMesh& imported, bool needs_
 }  // namespace
 
 bool has_mesh_extension(const std::string& path) {
-  return has_extension(path, ".msh") || has_extension(path, ".vtu") || has_extension(path, ".vtk");
+  return has_extension(path, ".msh") || has_extension(path, ".vtu") ||
+         has_extension(path, ".vtk") || has_extension(path, ".vtm") ||
+         has_extension(path, ".pvd") || has_extension(path, ".series") || is_exodus_name(path);
 }
 
 bool has_surface_extension(const std::string& path) {
@@ -126,11 +127,13 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   if (!has_mesh_extension(path) && (options.needs_solids || !has_surface_extension(path))) {
     throw IoError(path, "",
                   std::string("the name of a ") + (options.needs_solids ? "mesh" : "surface") +
-                      " to import must end in .msh, .vtu or .vtk" +
+                      " to import must end in .msh, .vtu, .vtk, .vtm, .pvd, .series, .e or .exo" +
                       (options.needs_solids ? "" : ", .stl, .ply, .obj or .vtp"));
   }
-  if (!std::ifstream(path)) {
-    throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  if (is_pattern(path)) {
+    numbered_files(path);
+  } else {
+    check_readable(path);
   }
   ImportedMesh mesh = read_mesh_in_child(path, options, limits_for(path, options.time_limit));
   check_imported(path, mesh, options.needs_solids);

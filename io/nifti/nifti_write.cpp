@@ -7,17 +7,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "io/files/extension.hpp"
 #include "io/files/finished_file.hpp"
 #include "io/files/scratch_file.hpp"
+#include "io/files/sink_checks.hpp"
 #include "io/files/volume_sink.hpp"
 #include "io/nifti/nifti_components.hpp"
 #include "io/nifti/nifti_extension.hpp"
@@ -28,11 +27,6 @@
 namespace tetwarp {
 namespace {
 constexpr std::int64_t largest_dim_1 = 32767;  // of NIfTI-1
-
-std::string disk_problem() {
-  return std::string("cannot be written: ") + std::strerror(errno) +
-         "; check the free space of the disk";
-}
 
 /// Facts of the file: those of the array or the defaults. ITK turns displacements of the intent
 /// DISPVECT from RAS to LPS, whatever the header says.
@@ -104,7 +98,7 @@ class NiftiSink : public VolumeSink {
       open_stream();
       copy_planes();
     }
-    if (!stream_->close()) throw IoError(path_, "", disk_problem());
+    if (!stream_->close()) throw_disk_error(path_);
     stream_.reset();
     scratch_.reset();
     WrittenFile written;
@@ -173,7 +167,7 @@ class NiftiSink : public VolumeSink {
     const std::vector<char> header = encode_nifti(fields, !extension.empty());
     if (!*stream_ || !stream_->write(header.data(), header.size()) ||
         !stream_->write(extension.data(), extension.size())) {
-      throw IoError(path_, "", disk_problem());
+      throw_disk_error(path_);
     }
   }
 
@@ -194,7 +188,7 @@ class NiftiSink : public VolumeSink {
     };
     const auto most = static_cast<std::int64_t>(nifti_part_bytes / size);
     if (!for_each_run(grid_.dims, region, most, write_run)) {
-      throw IoError(path_, "", disk_problem());
+      throw_disk_error(path_);
     }
   }
 
@@ -210,7 +204,7 @@ class NiftiSink : public VolumeSink {
           if (!scratch_ ||
               !read_at(scratch_->descriptor(), part_.data(), bytes, plane_offset(row, c) + done) ||
               !stream_->write(part_.data(), bytes)) {
-            throw IoError(path_, "", disk_problem());
+            throw_disk_error(path_);
           }
           done += count;
         }
@@ -245,17 +239,8 @@ std::unique_ptr<VolumeSink> make_nifti_sink(const std::string& path,
                                             const std::vector<ArrayHeader>& arrays,
                                             const VolumeWriteOptions& options,
                                             bool is_temporal) {
-  if (arrays.size() != 1) {
-    throw IoError(path, "",
-                  "a NIfTI image holds one array, not " + std::to_string(arrays.size()) +
-                      "; write a VTKHDF file");
-  }
-  try {
-    check_grid(grid, "grid");
-  } catch (const std::invalid_argument& error) {
-    throw IoError(path, "", error.what());
-  }
-  return std::make_unique<NiftiSink>(path, grid, arrays.front(), options, is_temporal);
+  const ArrayHeader& array = only_array(path, "a NIfTI image", grid, arrays);
+  return std::make_unique<NiftiSink>(path, grid, array, options, is_temporal);
 }
 
 void write_nifti(const std::string& path,

@@ -2,22 +2,19 @@
 /// Reads positions of control points in the axes of their markup.
 #include "io/points/markup_points.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <tetwarp/error.hpp>
 
 #include "io/files/finished_file.hpp"
+#include "io/files/text_file.hpp"
 
 namespace tetwarp {
 namespace {
 using Json = nlohmann::ordered_json;
 
 Json parsed(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  const std::string text = read_text(path);
   try {
-    return Json::parse(file);
+    return Json::parse(text);
   } catch (const Json::exception& error) {
     throw IoError(path, "", std::string("is no JSON: ") + error.what());
   }

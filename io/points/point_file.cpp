@@ -3,11 +3,9 @@
 #include <tetwarp/point_file.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
 #include "io/files/extension.hpp"
+#include "io/files/text_file.hpp"
 #include "io/points/foreign_points.hpp"
 #include "io/points/markup_points.hpp"
 #include "io/points/text_points.hpp"
@@ -21,9 +19,7 @@ bool ends_in(const std::string& path, const std::vector<std::string>& extensions
 }
 
 std::unique_ptr<PointDocument> open_document(const std::string& path, Axes axes) {
-  if (!std::ifstream(path)) {
-    throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-  }
+  check_readable(path);
   if (ends_in(path, {".csv", ".tsv", ".txt", ".fcsv"})) {
     return std::make_unique<TextPoints>(path, axes);
   }

@@ -3,25 +3,15 @@
 #include "io/points/text_points.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <tetwarp/error.hpp>
 
 #include "io/files/extension.hpp"
 #include "io/files/finished_file.hpp"
+#include "io/files/text_file.hpp"
 
 namespace tetwarp {
 namespace {
-std::string whole_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) throw IoError(path, "", std::string("cannot be read: ") + std::strerror(errno));
-  return text;
-}
-
 std::string lower(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
@@ -50,7 +40,7 @@ std::optional<std::string> value_of(std::string_view comment, std::string_view n
 }  // namespace
 
 TextPoints::TextPoints(const std::string& path, Axes axes)
-    : path_(path), text_(whole_text(path)), is_slicer_(has_extension(path, ".fcsv")), axes_(axes) {
+    : path_(path), text_(read_text(path)), is_slicer_(has_extension(path, ".fcsv")), axes_(axes) {
   if (is_slicer_) columns_ = {1, 2, 3};
   if (has_extension(path, ".tsv")) separator_ = '\t';
   split_lines();

@@ -17,9 +17,25 @@
 
 namespace tetwarp {
 namespace {
-constexpr int gmsh_triangle = 2;     ///< of three nodes
-constexpr int gmsh_tetrahedron = 4;  ///< of four nodes
-constexpr int gmsh_hexahedron = 5;   ///< of eight, in VTK's order
+/// The kept cells of Gmsh's types. Nodes are in VTK's order but the last two of ten.
+CellShape shape_of_type(int type) {
+  switch (type) {
+    case 2:
+      return CellShape::triangle;
+    case 4:
+      return CellShape::tetrahedron;
+    case 5:
+      return CellShape::hexahedron;
+    case 6:
+      return CellShape::wedge;
+    case 7:
+      return CellShape::pyramid;
+    case 11:
+      return CellShape::curved_tetrahedron;
+    default:
+      return CellShape::other;
+  }
+}
 
 /// Sections of which ImportedMesh keeps nothing.
 constexpr std::string_view unread_sections[] = {
@@ -77,9 +93,8 @@ CellKind kind_of_type(const GmshLibrary& gmsh, int type) {
   gmsh.call<decltype(gmshModelMeshGetElementProperties)>(
       "gmshModelMeshGetElementProperties", type, &name.data, &dimension, &order, &nodes,
       &positions.data, &positions.size, &primary_nodes);
-  const bool is_kept = type == gmsh_triangle || type == gmsh_tetrahedron || type == gmsh_hexahedron;
   return {name.data == nullptr ? "cell of type " + std::to_string(type) : name.data, dimension,
-          is_kept ? nodes : 0};
+          shape_of_type(type)};
 }
 
 CellNumbers add_cells(const std::string& path,
@@ -96,19 +111,22 @@ CellNumbers add_cells(const std::string& path,
   check(path, tags.size == types.size && nodes.size == types.size, "lacks cells");
   for (std::size_t type = 0; type < types.size; ++type) {
     const CellKind kind = kind_of_type(gmsh, types[type]);
-    check(path, nodes.sizes[type] >= tags.sizes[type] * static_cast<std::size_t>(kind.kept_nodes),
-          "lacks nodes of its cells");
-    if (!options.needs_solids && kind.dimension == 2 && kind.kept_nodes == 0) {
+    const std::size_t kept_nodes = node_count(kind.shape);
+    const bool is_curved = kind.shape == CellShape::curved_tetrahedron;
+    check(path, nodes.sizes[type] >= tags.sizes[type] * kept_nodes, "lacks nodes of its cells");
+    if (!options.needs_solids && kind.dimension == 2 && kept_nodes == 0) {
       throw IoError(path, "",
                     "holds cells of kind " + kind.name +
                         ", expected triangles of three nodes; triangulate the surface");
     }
     for (std::size_t c = 0; c < tags.sizes[type]; ++c) {
-      const std::size_t* const tags_of_cell =
-          nodes.data[type] + c * static_cast<std::size_t>(kind.kept_nodes);
+      const std::size_t* const tags_of_cell = nodes.data[type] + c * kept_nodes;
       add_cell(
           path, kind, static_cast<std::int64_t>(tags.data[type][c]),
-          [&](std::size_t n) { return place_of(path, places, tags_of_cell[n]); }, into, numbers);
+          [&](std::size_t n) {
+            return place_of(path, places, tags_of_cell[is_curved && n > 7 ? 17 - n : n]);
+          },
+          into, numbers);
     }
   }
   return numbers;

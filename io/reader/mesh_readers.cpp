@@ -21,10 +21,79 @@ void leave_out_cell(const std::string& path,
   if (kind.dimension == 3) {
     throw IoError(path, "",
                   "cell " + std::to_string(number) + " is a " + kind.name +
-                      ", expected tetrahedra of four nodes and hexahedra of eight; split the "
-                      "cells");
+                      ", expected tetrahedra of four or ten nodes, hexahedra of eight, wedges of "
+                      "six and pyramids of five; split the cells");
   }
   ++into.skipped[kind.name];
+}
+
+std::size_t node_count(CellShape shape) {
+  switch (shape) {
+    case CellShape::triangle:
+      return 3;
+    case CellShape::tetrahedron:
+      return 4;
+    case CellShape::curved_tetrahedron:
+      return 10;
+    case CellShape::hexahedron:
+    case CellShape::voxel:
+      return 8;
+    case CellShape::wedge:
+      return 6;
+    case CellShape::pyramid:
+      return 5;
+    default:
+      return 0;
+  }
+}
+
+namespace {
+/// Corners of the tetrahedra between the nodes of a curved one: four at its corners, and four
+/// around the line between the middles of two opposite edges.
+constexpr std::size_t curved_parts[8][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3},
+                                            {4, 9, 5, 6}, {4, 9, 6, 7}, {4, 9, 7, 8}, {4, 9, 8, 5}};
+
+/// The nodes of a hexahedron, in VTK's order, that make it another cell.
+constexpr std::size_t hexahedron_nodes[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+constexpr std::size_t voxel_nodes[8] = {0, 1, 3, 2, 4, 5, 7, 6};
+constexpr std::size_t wedge_nodes[8] = {0, 1, 2, 2, 3, 4, 5, 5};
+constexpr std::size_t pyramid_nodes[8] = {0, 1, 2, 3, 4, 4, 4, 4};
+}  // namespace
+
+void add_kept_cell(CellShape shape,
+                   const std::int32_t* nodes,
+                   std::int64_t number,
+                   ImportedMesh& into,
+                   CellNumbers& numbers) {
+  const auto add_hex = [&](const std::size_t(&order)[8]) {
+    std::array<std::int32_t, 8>& hex = into.mesh.hexes.emplace_back();
+    for (std::size_t n = 0; n < 8; ++n) hex[n] = nodes[order[n]];
+    numbers.hexes.push_back(number);
+  };
+  const auto add_tet = [&](const std::size_t(&order)[4]) {
+    into.mesh.tets.push_back({nodes[order[0]], nodes[order[1]], nodes[order[2]], nodes[order[3]]});
+    numbers.tets.push_back(number);
+  };
+  switch (shape) {
+    case CellShape::other:
+      return;
+    case CellShape::triangle:
+      into.triangles.push_back({nodes[0], nodes[1], nodes[2]});
+      return;
+    case CellShape::tetrahedron:
+      return add_tet({0, 1, 2, 3});
+    case CellShape::curved_tetrahedron:
+      for (const auto& part : curved_parts) add_tet(part);
+      return;
+    case CellShape::hexahedron:
+      return add_hex(hexahedron_nodes);
+    case CellShape::voxel:
+      return add_hex(voxel_nodes);
+    case CellShape::wedge:
+      return add_hex(wedge_nodes);
+    case CellShape::pyramid:
+      return add_hex(pyramid_nodes);
+  }
 }
 
 std::optional<std::string> choose_displacement(const std::string& path,

@@ -34,11 +34,26 @@ void place_vtk_points(const std::string& path,
 /// Reads a mesh by the library of its format. Most checks are left to import_mesh().
 ImportedMesh read_foreign_mesh(const std::string& path, const MeshImportOptions& options);
 
+/// The cells that are kept. Nodes are in VTK's order.
+enum class CellShape {
+  other,     ///< not kept
+  triangle,  ///< kept beside the mesh
+  tetrahedron,
+  curved_tetrahedron,  ///< of ten nodes; becomes the eight tetrahedra between them
+  hexahedron,
+  voxel,   ///< a hexahedron in another order
+  wedge,   ///< becomes a hexahedron with two edges of no length, which has the same map
+  pyramid  ///< becomes a hexahedron whose upper nodes are one
+};
+
+/// Nodes of a kept cell in its file; 0 of others.
+std::size_t node_count(CellShape shape);
+
 /// A kind of cell.
 struct CellKind {
   std::string name;  ///< in the format's words
   int dimension;
-  int kept_nodes;  ///< 3 of a triangle, 4 of a tetrahedron, 8 of a hexahedron, 0 of others
+  CellShape shape;
 };
 
 /// Counts a cell that is not kept. @throws IoError when it has three dimensions
@@ -46,6 +61,16 @@ void leave_out_cell(const std::string& path,
                     const CellKind& kind,
                     std::int64_t number,
                     ImportedMesh& into);
+
+/// Most nodes of a kept cell.
+constexpr std::size_t most_cell_nodes = 10;
+
+/// Adds a kept cell. @param nodes  node_count() of them
+void add_kept_cell(CellShape shape,
+                   const std::int32_t* nodes,
+                   std::int64_t number,
+                   ImportedMesh& into,
+                   CellNumbers& numbers);
 
 /// Adds a cell that is kept and its number, counts one of fewer dimensions. Triangles are both.
 /// @param number   of the cell in its file
@@ -58,18 +83,12 @@ void add_cell(const std::string& path,
               const NodeAt& node_at,
               ImportedMesh& into,
               CellNumbers& numbers) {
-  const auto nodes = [&]<std::size_t count>(std::array<std::int32_t, count> cell) {
-    for (std::size_t n = 0; n < count; ++n) cell[n] = static_cast<std::int32_t>(node_at(n));
-    return cell;
-  };
-  if (kind.kept_nodes == 4) {
-    into.mesh.tets.push_back(nodes(std::array<std::int32_t, 4>{}));
-    numbers.tets.push_back(number);
-  } else if (kind.kept_nodes == 8) {
-    into.mesh.hexes.push_back(nodes(std::array<std::int32_t, 8>{}));
-    numbers.hexes.push_back(number);
-  } else {
-    if (kind.kept_nodes == 3) into.triangles.push_back(nodes(std::array<std::int32_t, 3>{}));
+  std::array<std::int32_t, most_cell_nodes> nodes;
+  for (std::size_t n = 0; n < node_count(kind.shape); ++n) {
+    nodes[n] = static_cast<std::int32_t>(node_at(n));
+  }
+  add_kept_cell(kind.shape, nodes.data(), number, into, numbers);
+  if (kind.shape == CellShape::other || kind.shape == CellShape::triangle) {
     leave_out_cell(path, kind, number, into);
   }
 }

@@ -1,122 +1,39 @@
 /// @file mesh_vtk.cpp
-/// Meshes in VTK's XML and legacy formats, read by VTK.
+/// Meshes in VTK's XML and legacy formats and in Exodus files, read by VTK.
+#include <vtkAppendFilter.h>
 #include <vtkCellArray.h>
-#include <vtkCellTypes.h>
-#include <vtkDataArray.h>
-#include <vtkGenericCell.h>
-#include <vtkIdList.h>
+#include <vtkCellData.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkExodusIIReader.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkUnsignedCharArray.h>
+#include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
+#include <vtkXMLMultiBlockDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <map>
 #include <tetwarp/error.hpp>
+#include <utility>
 
 #include "io/files/extension.hpp"
+#include "io/files/numbered_files.hpp"
 #include "io/reader/mesh_readers.hpp"
-#include "io/reader/mesh_vtk_arrays.hpp"
 #include "io/reader/vtk_error_notes.hpp"
+#include "io/reader/vtk_file_list.hpp"
+#include "io/reader/vtk_steps.hpp"
 
 namespace tetwarp {
 namespace {
-CellKind kind_of_type(int type) {
-  const char* const name = vtkCellTypes::GetClassNameFromTypeId(type);
-  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-  const int kept_nodes = type == VTK_TRIANGLE     ? 3
-                         : type == VTK_TETRA      ? 4
-                         : type == VTK_HEXAHEDRON ? 8
-                                                  : 0;
-  return {name, cell ? cell->GetCellDimension() : 3, kept_nodes};
-}
-
-/// Checks what VTK's readers take from files unchecked and its accessors rely on.
-void check_cells(const std::string& path, vtkUnstructuredGrid& grid) {
-  if (grid.GetNumberOfCells() == 0) return;
-  vtkUnsignedCharArray* const types = grid.GetCellTypesArray();
-  if (types == nullptr || types->GetNumberOfValues() != grid.GetNumberOfCells() ||
-      !grid.GetCells()->IsValid()) {
-    throw IoError(path, "",
-                  "offsets, types and nodes of its cells contradict each other: damaged, write it "
-                  "again");
-  }
-}
-
-CellNumbers add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh& into) {
-  check_cells(path, grid);
-  CellNumbers numbers;
-  std::map<int, CellKind> kinds;
-  const vtkNew<vtkIdList> nodes;
-  for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
-    const int type = grid.GetCellType(c);
-    if (!kinds.contains(type)) kinds[type] = kind_of_type(type);
-    grid.GetCellPoints(c, nodes);
-    const auto node_at = [&](std::size_t n) {
-      const auto node = static_cast<vtkIdType>(n);
-      const vtkIdType id = node < nodes->GetNumberOfIds() ? nodes->GetId(node) : -1;
-      if (id >= 0 && id < grid.GetNumberOfPoints()) return id;
-      throw IoError(path, "",
-                    "cell " + std::to_string(c) + " does not have the nodes of a " +
-                        kinds[type].name + ", each from 0 to " +
-                        std::to_string(grid.GetNumberOfPoints() - 1) + ": damaged, write it again");
-    };
-    add_cell(path, kinds[type], c, node_at, into, numbers);
-  }
-  return numbers;
-}
-
-std::vector<std::string> array_names(vtkPointData& data) {
-  std::vector<std::string> names;
-  for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
-    const char* const name = data.GetArrayName(a);
-    if (name != nullptr && data.GetArray(a) != nullptr) names.emplace_back(name);
-  }
-  return names;
-}
-
-std::vector<Point3> rows_of(vtkDataArray& array) {
-  std::vector<Point3> rows(static_cast<std::size_t>(array.GetNumberOfTuples()));
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    array.GetTuple(static_cast<vtkIdType>(row), rows[row].data());
-  }
-  return rows;
-}
-
-void check_grid(const std::string& path, vtkUnstructuredGrid* grid) {
-  if (grid != nullptr && grid->GetNumberOfPoints() > 0) return;
-  throw IoError(path, "",
-                "holds no unstructured grid that VTK can read: damaged, or of another kind");
-}
-
-/// Takes the mesh from the first step, and from every step its displacement if there is one.
-/// @param number  of the step, which is its time where the file names none
-void add_step(const std::string& path,
-              vtkUnstructuredGrid& grid,
-              int number,
-              const MeshImportOptions& options,
-              ImportedMesh& into) {
-  vtkPointData& data = *grid.GetPointData();
-  const auto name = choose_displacement(path, array_names(data), options);
-  if (into.mesh.rest_positions.empty()) {
-    into.mesh.rest_positions = rows_of(*grid.GetPoints()->GetData());
-    const CellNumbers numbers = add_cells(path, grid, into);
-    add_arrays(grid, name, numbers, into);
-  }
-  if (!name) return;
-  vtkDataArray& array = *data.GetArray(name->c_str());
-  if (array.GetNumberOfComponents() != 3 ||
-      array.GetNumberOfTuples() != static_cast<vtkIdType>(into.mesh.rest_positions.size())) {
-    throw IoError(path, *name, "expected three components for every node");
-  }
-  into.displacements.push_back(rows_of(array));
-  into.times.push_back(time_of(grid).value_or(number));
-}
+using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
 
 /// VTK reads as many numbers as a file before version 5 declares, and beyond them where a cell goes
 /// on behind the last one.
@@ -152,7 +69,7 @@ void add_tables(const std::string& path, ImportedMesh& into) {
   }
 }
 
-ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& options) {
+Grid read_legacy_grid(const std::string& path) {
   const vtkNew<vtkUnstructuredGridReader> reader;
   const VtkErrorNotes notes(*reader);
   reader->SetFileName(path.c_str());
@@ -168,18 +85,14 @@ ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& optio
   const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
   check_grid(path, is_good ? reader->GetOutput() : nullptr);
   check_declared(path, *reader->GetOutput());
-  ImportedMesh mesh;
-  add_step(path, *reader->GetOutput(), 0, options, mesh);
-  add_tables(path, mesh);
-  return mesh;
+  return reader->GetOutput();
 }
 
 /// VTK's reader does not pass on the attribute TimeValues: without the field TimeValue times are 0,
 /// 1 and so on.
-ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options) {
+void add_xml(const std::string& path, VtkSteps& into) {
   const vtkNew<vtkXMLUnstructuredGridReader> reader;
   const VtkErrorNotes notes(*reader);
-  ImportedMesh mesh;
   if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();
@@ -189,20 +102,187 @@ ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options)
     reader->Update();
     const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
     check_grid(path, is_good ? reader->GetOutput() : nullptr);
-    add_step(path, *reader->GetOutput(), step, options, mesh);
+    into.add(path, *reader->GetOutput(), std::nullopt);
   }
-  if (steps > 1 && !time_of(*reader->GetOutput())) {
-    mesh.left_out.emplace_back("times of the steps, which are numbered from 0");
+}
+
+/// The first step of a .vtu file.
+Grid read_xml_grid(const std::string& path) {
+  const vtkNew<vtkXMLUnstructuredGridReader> reader;
+  const VtkErrorNotes notes(*reader);
+  if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
+  check_grid(path, is_good ? reader->GetOutput() : nullptr);
+  return reader->GetOutput();
+}
+
+/// One grid of several; nodes at the same place stay apart.
+Grid joined(const std::string& path, const std::vector<Grid>& parts) {
+  if (parts.empty()) check_grid(path, nullptr);
+  if (parts.size() == 1) return parts.front();
+  const vtkNew<vtkAppendFilter> append;
+  const VtkErrorNotes notes(*append);
+  for (const Grid& part : parts) append->AddInputData(part);
+  append->Update();
+  check_grid(path, notes.has_error() ? nullptr : append->GetOutput());
+  return append->GetOutput();
+}
+
+/// The unstructured grids of blocks; counts others.
+std::vector<Grid> grids_of(vtkMultiBlockDataSet& blocks, int& others) {
+  std::vector<Grid> grids;
+  const auto at = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks.NewIterator());
+  for (at->InitTraversal(); at->IsDoneWithTraversal() == 0; at->GoToNextItem()) {
+    vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(at->GetCurrentDataObject());
+    if (grid == nullptr) {
+      ++others;
+    } else if (grid->GetNumberOfPoints() > 0) {
+      grids.emplace_back(grid);
+    }
   }
-  if (steps > 1 && mesh.arrays.size() > 1) {
-    mesh.left_out.emplace_back("steps after the first of all arrays but the displacement");
+  return grids;
+}
+
+void add_other_blocks(int others, ImportedMesh& into) {
+  if (others > 0) {
+    into.left_out.push_back(std::to_string(others) + " blocks that are no unstructured grids");
   }
-  return mesh;
+}
+
+Grid read_blocks(const std::string& path, int& others) {
+  const vtkNew<vtkXMLMultiBlockDataReader> reader;
+  const VtkErrorNotes notes(*reader);
+  if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  auto* const blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error() && blocks != nullptr;
+  if (!is_good) check_grid(path, nullptr);
+  return joined(path, grids_of(*blocks, others));
+}
+
+/// The grid of one file of a series.
+Grid read_part(const std::string& path, int& others) {
+  if (!std::ifstream(path)) {
+    throw IoError(path, "", "cannot be opened, and a list of steps names it");
+  }
+  if (has_extension(path, ".vtu")) return read_xml_grid(path);
+  if (has_extension(path, ".vtm")) return read_blocks(path, others);
+  if (has_extension(path, ".vtk")) return read_legacy_grid(path);
+  throw IoError(path, "", "is a part of a mesh, whose files must be .vtu, .vtm or .vtk");
+}
+
+void add_list(const std::vector<VtkListStep>& list, VtkSteps& into) {
+  int others = 0;
+  for (const VtkListStep& step : list) {
+    std::vector<Grid> parts;
+    for (const std::string& file : step.files) parts.push_back(read_part(file, others));
+    into.add(step.files.front(), *joined(step.files.front(), parts), step.time);
+  }
+  add_other_blocks(others, into.mesh());
+}
+
+std::vector<VtkListStep> numbered_steps(const std::string& pattern) {
+  std::vector<VtkListStep> steps;
+  for (const std::string& file : numbered_files(pattern)) steps.push_back({std::nullopt, {file}});
+  return steps;
+}
+
+/// The name of the displacement in an Exodus file: by its convention an array that begins with
+/// "displ", in small or capital letters.
+std::optional<std::string> exodus_displacement(vtkExodusIIReader& reader) {
+  for (int a = 0; a < reader.GetNumberOfPointResultArrays(); ++a) {
+    const std::string name = reader.GetPointResultArrayName(a);
+    std::string small = name;
+    std::ranges::transform(small, small.begin(), [](unsigned char letter) {
+      return static_cast<char>(std::tolower(letter));
+    });
+    if (small.starts_with("displ")) return name;
+  }
+  return std::nullopt;
+}
+
+/// A copy of the first grid with the cells of all, whose points are the same: those of the file.
+Grid with_shared_points(const std::string& path, const std::vector<Grid>& blocks) {
+  const Grid all = joined(path, blocks);
+  if (blocks.size() == 1) return all;
+  const vtkIdType points = blocks.front()->GetNumberOfPoints();
+  for (const Grid& block : blocks) {
+    if (block->GetNumberOfPoints() != points) check_grid(path, nullptr);
+  }
+  const auto shared = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  shared->SetPoints(blocks.front()->GetPoints());
+  shared->GetPointData()->ShallowCopy(blocks.front()->GetPointData());
+  shared->GetFieldData()->ShallowCopy(blocks.front()->GetFieldData());
+  const vtkNew<vtkCellArray> cells;
+  vtkCellArray& joint = *all->GetCells();
+  const vtkNew<vtkIdList> nodes;
+  for (vtkIdType c = 0; c < all->GetNumberOfCells(); ++c) {
+    joint.GetCellAtId(c, nodes);
+    for (vtkIdType n = 0; n < nodes->GetNumberOfIds(); ++n) {
+      nodes->SetId(n, nodes->GetId(n) % points);
+    }
+    cells->InsertNextCell(nodes);
+  }
+  shared->SetCells(all->GetCellTypesArray(), cells);
+  shared->GetCellData()->ShallowCopy(all->GetCellData());
+  return shared;
+}
+
+ImportedMesh read_exodus(const std::string& path, MeshImportOptions options) {
+  const vtkNew<vtkExodusIIReader> reader;
+  const VtkErrorNotes notes(*reader);
+  if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
+  reader->SetFileName(path.c_str());
+  reader->UpdateInformation();
+  reader->ApplyDisplacementsOff();
+  reader->SetSqueezePoints(false);
+  reader->GenerateObjectIdCellArrayOff();
+  reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 1);
+  reader->SetAllArrayStatus(vtkExodusIIReader::ELEM_BLOCK, 1);
+  if (!options.displacement) options.displacement = exodus_displacement(*reader);
+  vtkInformation& facts = *reader->GetOutputInformation(0);
+  const int count = facts.Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+  const double* const times = facts.Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+  VtkSteps steps(options);
+  int others = 0;
+  for (int step = 0; step < std::max(1, count); ++step) {
+    if (count > 0) {
+      reader->UpdateTimeStep(times[step]);
+    } else {
+      reader->Update();
+    }
+    const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
+    if (!is_good || reader->GetOutput() == nullptr) check_grid(path, nullptr);
+    others = 0;
+    const Grid grid = with_shared_points(path, grids_of(*reader->GetOutput(), others));
+    steps.add(path, *grid, count > 0 ? std::optional(times[step]) : std::nullopt);
+  }
+  add_other_blocks(others, steps.mesh());
+  return steps.take();
 }
 }  // namespace
 
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options) {
-  return has_extension(path, ".vtu") ? read_xml(path, options) : read_legacy(path, options);
+  if (is_exodus_name(path)) return read_exodus(path, options);
+  VtkSteps steps(options);
+  if (is_pattern(path)) {
+    add_list(numbered_steps(path), steps);
+  } else if (has_extension(path, ".pvd")) {
+    add_list(read_pvd(path), steps);
+  } else if (has_extension(path, ".series")) {
+    add_list(read_series(path), steps);
+  } else if (has_extension(path, ".vtm")) {
+    add_list({{std::nullopt, {path}}}, steps);
+  } else if (has_extension(path, ".vtu")) {
+    add_xml(path, steps);
+  } else {
+    steps.add(path, *read_legacy_grid(path), std::nullopt);
+    add_tables(path, steps.mesh());
+  }
+  return steps.take();
 }
 
 }  // namespace tetwarp

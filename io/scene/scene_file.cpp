@@ -2,15 +2,14 @@
 /// Scene files: the keys of the scene itself, the files that it names, and the checks.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
 
+#include "io/files/text_file.hpp"
 #include "io/scene/scene_actions.hpp"
 #include "io/scene/scene_body.hpp"
 #include "io/scene/scene_contact.hpp"
@@ -56,6 +55,17 @@ SceneOutput read_output(const SceneValue& value) {
   }
   object.finish();
   return output;
+}
+
+Camera read_camera(const SceneValue& value) {
+  SceneObject object(value);
+  Camera camera;
+  camera.eye = object.get("eye", "the place of the camera [x, y, z]").point();
+  camera.target = object.get("target", "the place in the middle of the picture").point();
+  object.read("up", camera.up);
+  object.read("angle", camera.angle);
+  object.finish();
+  return camera;
 }
 
 void read_bodies(SceneObject& object, SceneFiles& files, Scene& scene) {
@@ -117,6 +127,7 @@ Scene read_keys(const SceneValue& value, SceneFiles& files) {
   read_list(object, "loads", read_load, scene.loads);
   if (const auto solver = object.find("solver")) scene.solver = read_solver(*solver);
   if (const auto output = object.find("output")) scene.output = read_output(*output);
+  if (const auto camera = object.find("camera")) scene.camera = read_camera(*camera);
   object.finish();
   return scene;
 }
@@ -143,13 +154,7 @@ Scene parse_scene(const std::string& text,
 }
 
 Scene read_scene(const std::string& file, std::vector<std::string>* files) {
-  const std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || text.bad()) {
-    throw IoError(file, "", "cannot be read; check the name of the scene file");
-  }
-  return parse_scene(text.str(), file, fs::path(file).parent_path().string(), files);
+  return parse_scene(read_text(file), file, fs::path(file).parent_path().string(), files);
 }
 
 }  // namespace tetwarp

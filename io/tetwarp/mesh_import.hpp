@@ -1,6 +1,7 @@
 /// @file mesh_import.hpp
 /// Meshes of other programs: Gmsh's MSH 2 and 4.1 (.msh), VTK's XML and legacy unstructured grids
-/// (.vtu, .vtk). The libraries of Gmsh and VTK read them; a build may be without either.
+/// (.vtu, .vtk), blocks (.vtm) and series of these (.pvd, .series, numbered files), Exodus. The
+/// libraries of Gmsh and VTK read them; a build may be without either.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -45,16 +46,25 @@ struct ImportedMesh {
   std::vector<std::string> left_out = {};  ///< other content of the file, by kind and name
   std::string merged = {};  ///< how many cells are there twice, as a text; empty: none
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into rest_positions
+  /// Whether the displacements are those of points that move with the steps, no array of the file.
+  bool moves_points = false;
 };
 
-/// True for names that end in .msh, .vtu or .vtk, also in capital letters.
+/// True for names that end in .msh, .vtu, .vtk, .vtm, .pvd, .series, .e, .exo or .ex2, also in
+/// capital letters.
 TETWARP_IO_EXPORT bool has_mesh_extension(const std::string& path);
 
 /// True for names of surfaces alone: .stl, .ply, .obj or .vtp, also in capital letters.
 TETWARP_IO_EXPORT bool has_surface_extension(const std::string& path);
 
 /// Reads a mesh of tetrahedra and hexahedra with all steps of its displacement. The format is
-/// chosen by the end of the name.
+/// chosen by the end of the name. A '*' in the name stands for any letters: the files are the steps
+/// of one mesh, in order of the numbers in their names.
+///
+/// A tetrahedron of ten nodes becomes eight straight ones between them: a position is off by at
+/// most a quarter of the sum of the distances of its six mid nodes from the middles of their edges.
+/// A wedge becomes a hexahedron with repeated nodes, and so does a pyramid: their maps are the
+/// same.
 ///
 /// VTK and Gmsh crash on some damaged files. They are in a program of their own, tetwarp-read,
 /// which sends the mesh back: a crash, an endless loop or an explosion of memory ends that program

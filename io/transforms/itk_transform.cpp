@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <tetwarp/error.hpp>
+
+#include "io/files/text_file.hpp"
 
 namespace tetwarp {
 namespace {
@@ -153,17 +152,10 @@ std::vector<double> numbers_in(const std::string& path, const std::string& text)
   }
   return numbers;
 }
-
-std::string whole_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) throw IoError(path, "", std::string("cannot be read: ") + std::strerror(errno));
-  return text;
-}
 }  // namespace
 
 std::vector<ItkTransform> read_itk_text(const std::string& path) {
-  const std::string text = whole_text(path);
+  const std::string text = read_text(path);
   if (!text.starts_with("#Insight Transform File")) {
     throw IoError(path, "",
                   "is no transform file of ITK, which begins with '#Insight Transform File'; a "
@@ -191,7 +183,7 @@ std::vector<ItkTransform> read_itk_text(const std::string& path) {
 
 /// Level 4 files: for each matrix a head of five numbers, a name, and its entries.
 std::vector<ItkTransform> read_itk_matlab(const std::string& path) {
-  const std::string bytes = whole_text(path);
+  const std::string bytes = read_text(path);
   std::vector<ItkTransform> transforms;
   const auto damaged = [&] {
     return IoError(path, "",

@@ -13,7 +13,8 @@ struct MeshReader::State {
   /// Steps of a file of Gmsh or VTK, which is read as a whole.
   struct ImportedSteps {
     std::vector<Point3> points;
-    std::vector<std::vector<Point3>> displacements;  ///< per step; empty: none
+    std::vector<std::vector<Point3>> displacements;  ///< per step, or points where these move;
+                                                     ///< empty: neither
   };
 
   std::string path;
@@ -41,6 +42,13 @@ void check_node_count(const std::string& path, std::size_t found, std::size_t ex
   throw IoError(
       path, "",
       "has " + std::to_string(found) + " nodes, the mesh has " + std::to_string(expected));
+}
+
+/// Adds to each row that of the same node.
+void add(const std::vector<Point3>& more, std::vector<Point3>& rows) {
+  for (std::size_t node = 0; node < rows.size(); ++node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) rows[node][axis] += more[node][axis];
+  }
 }
 
 /// Two steps have the same topology when their cells and connectivity are the same rows.
@@ -93,15 +101,21 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
 }
 
 void MeshReader::State::import(const MeshReadOptions& options) {
-  if (options.rest_step != 0) {
-    throw IoError(path, "",
-                  "has no step " + std::to_string(options.rest_step) +
-                      " of points: points of its format do not move, --rest-step is 0");
-  }
   ImportedMesh whole = import_mesh(path, options.import);
+  if (options.rest_step != 0 &&
+      (!whole.moves_points || options.rest_step >= std::ssize(whole.times))) {
+    throw IoError(path, "",
+                  "has no step " + std::to_string(options.rest_step) + " of points" +
+                      (whole.moves_points ? "" : ": its points do not move, --rest-step is 0"));
+  }
   mesh = std::move(whole.mesh);
   imported.displacements = std::move(whole.displacements);
-  header.has_displacement = !imported.displacements.empty();
+  header.has_displacement = !imported.displacements.empty() && !whole.moves_points;
+  header.has_moving_points = whole.moves_points;
+  if (whole.moves_points) {
+    for (std::vector<Point3>& points : imported.displacements) add(mesh.rest_positions, points);
+    mesh.rest_positions = imported.displacements[static_cast<std::size_t>(options.rest_step)];
+  }
   header.merged = whole.merged;
   for (MeshArray& array : whole.arrays) {
     if (array.is_of_cells && array.name == "group") {
@@ -113,8 +127,8 @@ void MeshReader::State::import(const MeshReadOptions& options) {
   }
   header.not_read.insert(header.not_read.end(), whole.left_out.begin(), whole.left_out.end());
   add_skipped(whole.skipped, header.not_read);
-  header.times = header.has_displacement ? std::move(whole.times) : std::vector<double>{0.0};
-  if (!header.has_displacement) imported.points = mesh.rest_positions;
+  header.times = imported.displacements.empty() ? std::vector<double>{0.0} : std::move(whole.times);
+  if (imported.displacements.empty()) imported.points = mesh.rest_positions;
 }
 
 /// The displacement of a step or, without one, its points.
@@ -123,8 +137,8 @@ std::vector<Point3> MeshReader::State::vectors_of(std::int64_t step) const {
     if (step < 0 || step >= std::ssize(header.times)) {
       throw IoError(path, "", "has no step " + std::to_string(step));
     }
-    return header.has_displacement ? imported.displacements[static_cast<std::size_t>(step)]
-                                   : imported.points;
+    return imported.displacements.empty() ? imported.points
+                                          : imported.displacements[static_cast<std::size_t>(step)];
   }
   file->file().check_step(step);
   if (!is_same_topology(parts, file->parts_of(step))) {
@@ -178,11 +192,7 @@ std::vector<Point3> MeshReader::read_step(std::int64_t step) const {
   std::vector<Point3> positions = state.vectors_of(step);
   check_node_count(state.path, positions.size(), state.mesh.rest_positions.size());
   if (!state.header.has_displacement) return positions;
-  for (std::size_t node = 0; node < positions.size(); ++node) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      positions[node][axis] += state.mesh.rest_positions[node][axis];
-    }
-  }
+  add(state.mesh.rest_positions, positions);
   return positions;
 }
 

@@ -12,7 +12,6 @@ namespace tetwarp {
 using CellPair = KeyValue;
 
 constexpr CellPair rejected_pair = no_key_value;
-constexpr std::uint32_t accepted_bit = flag_bit;
 
 TETWARP_HD CellPair make_pair(std::int64_t cell, std::int64_t tet, bool accepted) {
   return make_key_value(cell, tet, accepted);

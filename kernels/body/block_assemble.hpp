@@ -187,8 +187,8 @@ using BlockAssembleOp = BlockAssembleOpOf<Triple>;
 
 /// All blocks of the system.
 template <class Exec>
-void block_assemble(Exec& exec, const char* label, const BlockAssembleOp& body) {
-  exec.for_each(label, body.rows.upper.size, body);
+void block_assemble(Exec& exec, const char* label, const BlockAssembleOp& op) {
+  exec.for_each(label, op.rows.upper.size, op);
 }
 
 }  // namespace tetwarp

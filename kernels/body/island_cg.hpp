@@ -5,11 +5,12 @@
 ///
 /// Conjugate gradients run with numbers of type T. Between runs the residual is computed anew in
 /// float64, and the next run solves for the correction, until |r|_{D^-1} <= tolerance |b|_{D^-1},
-/// or |r| is as small as the rounding of A x allows. Source: Hestenes and Stiefel 1952.
+/// or |r| is as small as the rounding of A x allows.
 #pragma once
 #include <cmath>
 #include <cstdint>
 
+#include "kernels/base/conjugate_gradients.hpp"
 #include "kernels/base/from_index.hpp"
 #include "kernels/base/plain_sums.hpp"
 #include "kernels/base/view.hpp"
@@ -17,9 +18,17 @@
 
 namespace tetwarp {
 
-/// Arrays of the solves, shared by all islands; [rows][3] or [3 rows].
+/// Label of the stages.
+TETWARP_HD constexpr const char* gradient_label() {
+  return "body/linear";
+}
+
+/// Arrays of the solves, shared by all islands; [rows][3] or [3 rows]. A system of conjugate
+/// gradients, one index per row.
 template <class T>
 struct GradientArrays {
+  using Number = T;
+
   SystemRows rows;
   View<const double> values;   ///< A
   View<const T> copy;          ///< A as T; for T = double the same
@@ -27,6 +36,28 @@ struct GradientArrays {
   View<const double> load;     ///< b, with the columns of prescribed rows moved into it
   View<double> x;              ///< in: start; out: solution
   View<T> r, z, p, q;
+
+  TETWARP_HD static constexpr const char* label() { return gradient_label(); }
+  TETWARP_HD NumberRange numbers(std::int64_t row) const { return {3 * row, 3 * row + 3}; }
+  /// Both rows of a rigid body at the first of them.
+  TETWARP_HD NumberRange coupled(std::int64_t row) const {
+    const int count = rows.pair[row] == 2 ? 0 : rows.pair[row] == 1 ? 6 : 3;
+    return {3 * row, 3 * row + count};
+  }
+  TETWARP_HD double multiply(std::int64_t row) const {
+    T product[3];
+    multiply_blocks(copy.data, rows.column.data, rows.start[row], rows.free_end[row],
+                    static_cast<const T*>(p.data), product);
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      q[3 * row + i] = product[i];
+      sum += static_cast<double>(p[3 * row + i]) * static_cast<double>(product[i]);
+    }
+    return sum;
+  }
+  TETWARP_HD void precondition(std::int64_t row) const {
+    inverse.multiply(row, r.data + 3 * row, z.data + 3 * row);
+  }
 };
 
 struct GradientOptions {
@@ -43,12 +74,10 @@ struct GradientEnd {
   bool is_stopped = false;  ///< the host ended it
 };
 
-/// Sums and factors of an iteration, in memory of the executor. Where all threads of an executor
-/// receive sums, each of them has its own.
-struct GradientScalars {
-  PlainSums<2> start;                    ///< r . D^-1 r and b . D^-1 b of the float64 residual
-  PlainSums<1> square, next, curvature;  ///< r . z, the next one, p . A p
-  double step, turn;
+/// Sums and factors of the solve of an island; see GradientScalars.
+struct IslandScalars {
+  PlainSums<2> start;  ///< r . D^-1 r and b . D^-1 b of the float64 residual
+  GradientScalars iteration;
 };
 
 /// r = b - A x, z = p = D^-1 r. Returns r . z and b . D^-1 b.
@@ -80,61 +109,6 @@ struct IslandStartOp {
       sums.value[1] += static_cast<double>(b[i]) * static_cast<double>(zb[i]);
     }
     return sums;
-  }
-};
-
-/// q = A p. Returns p . q.
-template <class T>
-struct IslandProductOp {
-  GradientArrays<T> a;
-
-  TETWARP_HD PlainSums<1> operator()(std::int64_t row) const {
-    T q[3];
-    multiply_blocks(a.copy.data, a.rows.column.data, a.rows.start[row], a.rows.free_end[row],
-                    static_cast<const T*>(a.p.data), q);
-    PlainSums<1> sum{};
-    for (int i = 0; i < 3; ++i) {
-      a.q[3 * row + i] = q[i];
-      sum.value[0] += static_cast<double>(a.p[3 * row + i]) * static_cast<double>(q[i]);
-    }
-    return sum;
-  }
-};
-
-/// x += step p, r -= step q, z = D^-1 r. Returns r . z.
-template <class T>
-struct IslandStepOp {
-  GradientArrays<T> a;
-  const double* step;
-
-  TETWARP_HD PlainSums<1> operator()(std::int64_t row) const {
-    if (a.rows.pair[row] == 2) return {};
-    const double factor = *step;
-    const int count = a.rows.pair[row] == 1 ? 6 : 3;
-    for (int i = 0; i < count; ++i) {
-      const std::int64_t k = 3 * row + i;
-      a.x[k] += factor * static_cast<double>(a.p[k]);
-      a.r[k] -= static_cast<T>(factor) * a.q[k];
-    }
-    a.inverse.multiply(row, a.r.data + 3 * row, a.z.data + 3 * row);
-    PlainSums<1> sum{};
-    for (int i = 0; i < count; ++i) {
-      const std::int64_t k = 3 * row + i;
-      sum.value[0] += static_cast<double>(a.r[k]) * static_cast<double>(a.z[k]);
-    }
-    return sum;
-  }
-};
-
-/// p = z + turn p.
-template <class T>
-struct IslandTurnOp {
-  GradientArrays<T> a;
-  const double* turn;
-
-  TETWARP_HD void operator()(std::int64_t row) const {
-    const T factor = static_cast<T>(*turn);
-    for (std::int64_t k = 3 * row; k < 3 * row + 3; ++k) a.p[k] = a.z[k] + factor * a.p[k];
   }
 };
 
@@ -179,72 +153,11 @@ struct GradientFillOp {
   }
 };
 
-/// A single index, before an iteration.
+/// A single index, before the first iteration.
 struct GradientBeginOp {
-  GradientScalars* s;
-  TETWARP_HD void operator()(std::int64_t) const { s->square.value[0] = s->start.value[0]; }
-};
-/// A single index: the length of the step; zero ends the run.
-struct GradientLengthOp {
-  GradientScalars* s;
+  IslandScalars* s;
   TETWARP_HD void operator()(std::int64_t) const {
-    const double square = s->square.value[0], curvature = s->curvature.value[0];
-    s->step = curvature > 0 && square > 0 ? square / curvature : 0;
-  }
-};
-/// A single index: the factor of the last direction in the next one.
-struct GradientMixOp {
-  GradientScalars* s;
-  TETWARP_HD void operator()(std::int64_t) const {
-    const double square = s->square.value[0], next = s->next.value[0];
-    s->turn = square > 0 ? next / square : 0;
-    s->square.value[0] = next;
-  }
-};
-
-/// Of the stages below.
-TETWARP_HD constexpr const char* gradient_label() {
-  return "body/linear";
-}
-
-/// Sums op(row) over rows [begin, end) into a member of the scalars.
-template <class Exec, class Op, class Sum>
-TETWARP_ANY_EXEC void gradient_sum(
-    Exec& exec, std::int64_t begin, std::int64_t end, const Op& op, Sum* out) {
-  exec.sum_to(gradient_label(), begin, end, op, out);
-}
-/// Runs an op on the scalars.
-template <class Exec, class Op>
-TETWARP_ANY_EXEC void gradient_once(Exec& exec, const Op& op) {
-  exec.once(gradient_label(), op);
-}
-
-/// q = A p on rows [begin, end).
-/// @param curvature  out: p . q, in memory of the executor
-template <class Exec, class T>
-TETWARP_ANY_EXEC void island_product(Exec& exec,
-                                     const GradientArrays<T>& a,
-                                     std::int64_t begin,
-                                     std::int64_t end,
-                                     PlainSums<1>* curvature) {
-  gradient_sum(exec, begin, end, IslandProductOp<T>{a}, curvature);
-}
-
-/// One iteration on rows [begin, end).
-template <class T>
-struct GradientIteration {
-  GradientArrays<T> a;
-  std::int64_t begin, end;
-  GradientScalars* scalars;  ///< in memory of the executor
-
-  template <class Exec>
-  TETWARP_ANY_EXEC void run(Exec& exec) const {
-    island_product(exec, a, begin, end, &scalars->curvature);
-    gradient_once(exec, GradientLengthOp{scalars});
-    gradient_sum(exec, begin, end, IslandStepOp<T>{a, &scalars->step}, &scalars->next);
-    gradient_once(exec, GradientMixOp{scalars});
-    exec.for_each(gradient_label(), end - begin,
-                  FromIndex<IslandTurnOp<T>>{{a, &scalars->turn}, begin});
+    s->iteration.square.value[0] = s->start.value[0];
   }
 };
 
@@ -270,7 +183,7 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
                                        std::int64_t begin,
                                        std::int64_t end,
                                        const GradientOptions& options,
-                                       GradientScalars* scalars,
+                                       IslandScalars* scalars,
                                        const Proceed& proceed,
                                        Iterations iterations = {}) {
   constexpr int max_runs = 60;
@@ -278,7 +191,7 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
   GradientEnd result;
   double before = 0;
   for (int run = 0; run < max_runs; ++run) {
-    gradient_sum(exec, begin, end, IslandStartOp<T>{a}, &scalars->start);
+    gradient_sum(exec, gradient_label(), begin, end, IslandStartOp<T>{a}, &scalars->start);
     const PlainSums<2> start = exec.load(&scalars->start);
     const double square = start.value[0], unit = start.value[1];
     if (unit == 0) {  // b = 0
@@ -296,20 +209,23 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
     result.is_converged = result.residual <= options.tolerance;
     if (result.is_converged || result.iterations >= options.max_iterations) break;
     if (run > 0 && !(square < 0.25 * before)) {  // no further progress
-      gradient_sum(exec, begin, end, GradientRoundingOp<T>{a}, &scalars->next);
-      result.is_converged = square <= 16 * exec.load(&scalars->next).value[0];
+      gradient_sum(exec, gradient_label(), begin, end, GradientRoundingOp<T>{a},
+                   &scalars->iteration.next);
+      result.is_converged = square <= 16 * exec.load(&scalars->iteration.next).value[0];
       break;
     }
     before = square;
     const double target =
         max_of(0.5 * square_of(options.tolerance) * unit, square_of(run_target) * square);
-    gradient_once(exec, GradientBeginOp{scalars});
+    gradient_once(exec, gradient_label(), GradientBeginOp{scalars});
     while (result.iterations < options.max_iterations) {
       const std::int64_t count =
           min_of(Iterations::most, options.max_iterations - result.iterations);
-      iterations.run(exec, count, GradientIteration<T>{a, begin, end, scalars});
+      iterations.run(exec, count,
+                     GradientIteration<GradientArrays<T>>{a, begin, end, &scalars->iteration,
+                                                          &scalars->iteration.square});
       result.iterations += count;
-      const GradientScalars now = exec.load(scalars);
+      const GradientScalars now = exec.load(&scalars->iteration);
       if (!(now.square.value[0] > target) || now.step == 0) break;
       if (!proceed(result.iterations)) {
         result.is_stopped = true;

@@ -22,12 +22,16 @@ struct AlwaysProceed {
 /// Every thread of a team has all sums and computes the scalars for itself, which saves barriers:
 /// an iteration has those of two sums, and one.
 template <class Team, class Op, class Sum>
-__device__ __forceinline__ void gradient_sum(
-    IslandExec<Team>& exec, std::int64_t begin, std::int64_t end, const Op& op, Sum* out) {
-  *out = exec.template sum<Sum>(gradient_label(), begin, end, op);
+__device__ __forceinline__ void gradient_sum(IslandExec<Team>& exec,
+                                             const char* label,
+                                             std::int64_t begin,
+                                             std::int64_t end,
+                                             const Op& op,
+                                             Sum* out) {
+  *out = exec.template sum<Sum>(label, begin, end, op);
 }
 template <class Team, class Op>
-__device__ __forceinline__ void gradient_once(IslandExec<Team>&, const Op& op) {
+__device__ __forceinline__ void gradient_once(IslandExec<Team>&, const char*, const Op& op) {
   op(0);
 }
 
@@ -43,7 +47,7 @@ __global__ void __launch_bounds__(threads, 512 / threads)
   IslandExec<Team> exec(nullptr, Team(dynamic_shared<unsigned char>()));
   const auto which = static_cast<std::int64_t>(blockIdx.x);
   const IslandRows rows = islands[which];
-  GradientScalars scalars;
+  IslandScalars scalars;
   const GradientEnd end =
       island_cg(exec, arrays, rows.begin, rows.end, options, &scalars, AlwaysProceed{});
   if (threadIdx.x == 0) ends[which] = end;
@@ -61,7 +65,7 @@ __global__ void __launch_bounds__(sum_threads, 2) island_cg_grid_kernel(Gradient
                                                                         View<GradientEnd> end) {
   IslandExec<GridTeam> exec(nullptr,
                             GridTeam(sums, rows.end - rows.begin, dynamic_shared<unsigned char>()));
-  GradientScalars scalars;
+  IslandScalars scalars;
   const GradientEnd own =
       island_cg(exec, arrays, rows.begin, rows.end, options, &scalars, AlwaysProceed{});
   if (exec.first() == 0) end[0] = own;

@@ -143,8 +143,8 @@ struct TetForceOp {
 
 /// Forces and turned gradients of all tetrahedra.
 template <class Exec>
-void tet_forces(Exec& exec, const char* label, const TetForceOp& body) {
-  exec.for_each(label, body.tets.count, body);
+void tet_forces(Exec& exec, const char* label, const TetForceOp& op) {
+  exec.for_each(label, op.tets.count, op);
 }
 
 }  // namespace tetwarp

@@ -78,8 +78,8 @@ struct CellRangeOp {
 /// Sets the range of every cell. The CPU's executor has a faster overload
 /// (host/warp/cpu/cell_cull_cpu.hpp).
 template <class Exec>
-void cell_ranges(Exec& exec, const CellRangeOp& body) {
-  exec.for_each("warp/cull", body.ranges.size, body);
+void cell_ranges(Exec& exec, const CellRangeOp& op) {
+  exec.for_each("warp/cull", op.ranges.size, op);
 }
 
 /// Compacts and sorts the pairs and finds the range of every cell.

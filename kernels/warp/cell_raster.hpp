@@ -205,18 +205,21 @@ TETWARP_HD_RARE HexMap hex_map_of(const RasterGeometry& job, std::int64_t t) {
   return make_hex_map({job.hexes, job.tets, job.nodes, job.rest}, t, job.setups[t]);
 }
 
-/// Stores frame voxel x, which tetrahedron `tet` owns, a part of the hexahedron that `map` is for.
+/// Stores frame voxel x, which a tetrahedron owns that is part of the hexahedron that `map` is for.
 template <bool is_general, class T>
 TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
-                                     const TetSetup& tet,
                                      const HexMap& map,
                                      const int* x,
                                      std::int64_t voxel) {
   int whole[3];
   double at[3];
-  hex_source_position(tet, map, x, whole, at);
-  for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
-  store_position<is_general>(job, job.filter, whole, at, voxel);
+  ArithmeticOf<T> local[3];
+  hex_source_position(map, x, whole, at);
+  for (int axis = 0; axis < 3; ++axis) {
+    whole[axis] -= job.source.origin[axis];
+    local[axis] = static_cast<ArithmeticOf<T>>(at[axis]);
+  }
+  store_position<is_general>(job, job.filter, whole, local, voxel);
 }
 
 /// Whether the tetrahedron moved by whole voxels: its voxels copy one sample with any filter.
@@ -233,7 +236,7 @@ TETWARP_HD void store_owned(const RasterJob<T>& job, std::int64_t t, const CellV
     if (tet.kind == MapKind::trilinear) {
       const int x[3] = {voxel.corner[0] + voxel.i, voxel.corner[1] + voxel.j,
                         voxel.corner[2] + voxel.k};
-      store_hex_voxel<is_general>(job, tet, hex_map_of(job, t), x, voxel.offset);
+      store_hex_voxel<is_general>(job, hex_map_of(job, t), x, voxel.offset);
       return;
     }
   }

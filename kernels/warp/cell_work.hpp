@@ -109,8 +109,8 @@ struct CellWorkOp {
 
 /// Sets the work of all cells.
 template <class Exec, class T>
-void cell_work(Exec& exec, const CellWorkOp<T>& body) {
-  exec.for_each("warp/raster", body.work.size, body);
+void cell_work(Exec& exec, const CellWorkOp<T>& op) {
+  exec.for_each("warp/raster", op.work.size, op);
 }
 
 }  // namespace tetwarp

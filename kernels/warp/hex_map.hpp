@@ -38,83 +38,123 @@ TETWARP_HD HexCorners hex_corners(View<const Node> nodes,
   return corners;
 }
 
-/// The trilinear map x(u) at local coordinates u, each 0 to 1, and its gradient dx/du.
-TETWARP_HD void map_hex(const HexCorners& hex, const double* u, double* x, Matrix3& gradient) {
+/// A trilinear map as a polynomial: x = t0 + u t1 + v t2 + w t3 + u v t4 + v w t5 + w u t6 +
+/// u v w t7, with local coordinates u, v, w from 0 to 1.
+struct HexTerms {
+  double at[3][8];  ///< [axis][term]
+};
+
+TETWARP_HD HexTerms hex_terms(const HexCorners& hex) {
+  HexTerms terms;
   for (int row = 0; row < 3; ++row) {
-    x[row] = 0;
-    for (int axis = 0; axis < 3; ++axis) gradient.at[row][axis] = 0;
+    const auto along = [&](int from, int to) { return hex.at[to][row] - hex.at[from][row]; };
+    double* const t = terms.at[row];
+    t[0] = hex.at[0][row];
+    t[1] = along(0, 1);
+    t[2] = along(0, 3);
+    t[3] = along(0, 4);
+    t[4] = along(3, 2) - t[1];
+    t[5] = along(4, 7) - t[2];
+    t[6] = along(4, 5) - t[1];
+    t[7] = (along(7, 6) - along(4, 5)) - t[4];
   }
-  for (int a = 0; a < 8; ++a) {
-    double weight[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      weight[axis] = unit_corner(a, axis) != 0 ? u[axis] : 1 - u[axis];
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const double others = weight[(axis + 1) % 3] * weight[(axis + 2) % 3];
-      const double slope = unit_corner(a, axis) != 0 ? others : -others;
-      for (int row = 0; row < 3; ++row) gradient.at[row][axis] += slope * hex.at[a][row];
-    }
-    const double all = weight[0] * weight[1] * weight[2];
-    for (int row = 0; row < 3; ++row) x[row] += all * hex.at[a][row];
+  return terms;
+}
+
+/// The trilinear map x(u) at local coordinates u and its gradient dx/du. Vectors of the CPU repeat
+/// this order of operations (host/warp/cpu/row_hex-inl.hpp).
+TETWARP_HD void map_hex(const HexTerms& hex, const double* u, double* x, Matrix3& gradient) {
+  for (int row = 0; row < 3; ++row) {
+    const double* const t = hex.at[row];
+    const double turned = t[5] + u[0] * t[7];
+    const double along = (t[1] + u[1] * t[4]) + u[2] * (t[6] + u[1] * t[7]);
+    gradient.at[row][0] = along;
+    gradient.at[row][1] = (t[2] + u[0] * t[4]) + u[2] * turned;
+    gradient.at[row][2] = (t[3] + u[0] * t[6]) + u[1] * turned;
+    x[row] = ((t[0] + u[1] * t[2]) + u[2] * (t[3] + u[1] * t[5])) + u[0] * along;
   }
+}
+
+/// Newton's step of local coordinates for a map that is `left` short of its target.
+/// @returns false where the map is singular
+TETWARP_HD bool hex_step(const Matrix3& gradient, const double* left, double* step) {
+  const Matrix3 cofactor = cofactors(gradient);
+  const double det = gradient.at[0][0] * cofactor.at[0][0] + gradient.at[0][1] * cofactor.at[0][1] +
+                     gradient.at[0][2] * cofactor.at[0][2];
+  if (det == 0) return false;
+  const double scale = 1.0 / det;
+  for (int axis = 0; axis < 3; ++axis) {
+    step[axis] = scale * (cofactor.at[0][axis] * left[0] + cofactor.at[1][axis] * left[1] +
+                          cofactor.at[2][axis] * left[2]);
+  }
+  return true;
 }
 
 /// How far outside of [0, 1] local coordinates may lie. Ownership uses two triangles in place of a
 /// curved face, so some owned voxels are slightly outside of the hexahedron.
 constexpr double hex_margin = 0.25;
 
+/// How near to its target the iteration below ends [voxel]: far below the quantum.
+constexpr double hex_tolerance = 0x1p-32;
+constexpr int max_hex_steps = 30;
+
 /// Finds the local coordinates u of position `target` by damped Newton iteration from the given u.
 /// Steps are clamped to [-hex_margin, 1 + hex_margin] and halved until the distance decreases;
 /// stops where no step decreases it.
-TETWARP_HD_RARE void invert_hex(const HexCorners& hex, const double* target, double* u) {
-  constexpr int max_steps = 30, max_halvings = 6;
-  constexpr double exact = 0x1p-32;  // [voxel]: far below the quantum
-  const auto distance = [&](const double* x) {
-    return max_of(fabs(target[0] - x[0]), max_of(fabs(target[1] - x[1]), fabs(target[2] - x[2])));
+TETWARP_HD_RARE void invert_hex(const HexTerms& hex, const double* target, double* u) {
+  constexpr int max_halvings = 6;
+  const auto distance = [](const double* left) {
+    return max_of(fabs(left[0]), max_of(fabs(left[1]), fabs(left[2])));
   };
-  double x[3];
+  double x[3], left[3];
   Matrix3 gradient;
   map_hex(hex, u, x, gradient);
-  double left = distance(x);
-  for (int step = 0; step < max_steps && left > exact; ++step) {
-    const double det = determinant(gradient);
-    if (det == 0) return;
-    const Matrix3 adjoint = transposed(cofactors(gradient));
+  for (int axis = 0; axis < 3; ++axis) left[axis] = target[axis] - x[axis];
+  double far = distance(left);
+  for (int step = 0; step < max_hex_steps && far > hex_tolerance; ++step) {
     double full[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      full[axis] = 0;
-      for (int row = 0; row < 3; ++row) {
-        full[axis] += adjoint.at[axis][row] * (target[row] - x[row]);
-      }
-      full[axis] /= det;
-    }
-    const double before = left;
+    if (!hex_step(gradient, left, full)) return;
+    const double before = far;
     double share = 1;
-    for (int halving = 0; halving <= max_halvings && left >= before; ++halving, share *= 0.5) {
-      double tried[3], tried_x[3];
+    for (int halving = 0; halving <= max_halvings && far >= before; ++halving, share *= 0.5) {
+      double tried[3], tried_left[3];
       Matrix3 tried_gradient;
       for (int axis = 0; axis < 3; ++axis) {
         tried[axis] = min_of(max_of(u[axis] + share * full[axis], -hex_margin), 1 + hex_margin);
       }
-      map_hex(hex, tried, tried_x, tried_gradient);
-      if (!(distance(tried_x) < before)) continue;
-      left = distance(tried_x);
+      map_hex(hex, tried, x, tried_gradient);
+      for (int axis = 0; axis < 3; ++axis) tried_left[axis] = target[axis] - x[axis];
+      if (!(distance(tried_left) < before)) continue;
+      far = distance(tried_left);
       gradient = tried_gradient;
       for (int axis = 0; axis < 3; ++axis) {
         u[axis] = tried[axis];
-        x[axis] = tried_x[axis];
+        left[axis] = tried_left[axis];
       }
     }
-    if (left >= before) return;
+    if (far >= before) return;
   }
 }
 
-/// The deformed and the rest shape of a hexahedron, relative to points near one of its tetrahedra.
+/// The deformed and the rest shape of a hexahedron.
+struct HexShape {
+  HexTerms output;        ///< relative to `from`
+  HexTerms source;        ///< relative to `whole`
+  std::int64_t from[3];   ///< the voxel of the output of its first node [frame]
+  std::int64_t whole[3];  ///< the voxel of the source of its first node
+};
+
+/// Where Newton's method begins for the voxels of a tetrahedron: by its affine map.
+struct HexStart {
+  /// Local coordinates are at[0] x + at[1] y + at[2] z + at[3], positions relative to
+  /// HexShape::from.
+  double at[4][3];
+};
+
+/// The map of a hexahedron for the voxels of one of its tetrahedra.
 struct HexMap {
-  HexCorners output;      ///< relative to the tetrahedron's anchor
-  HexCorners source;      ///< relative to `whole`
-  std::int64_t whole[3];  ///< a voxel of the source near the hexahedron
-  double start[4][3];     ///< local coordinates of the tetrahedron's nodes
+  HexShape shape;
+  HexStart start;
 };
 
 /// The mesh data that maps of hexahedra are computed from.
@@ -125,39 +165,67 @@ struct HexMesh {
   View<const Node> rest;          ///< in the source's index space [quantum]
 };
 
+/// The hexahedron that tetrahedron t is part of. @pre mesh.hexes.has(t)
+TETWARP_HD HexShape make_hex_shape(const HexMesh& mesh, std::int64_t t) {
+  const std::int32_t* const hex = mesh.hexes.nodes_of(t);
+  HexShape shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    shape.from[axis] = mesh.nodes[hex[0]].x[axis] >> quantum_bits;
+    shape.whole[axis] = mesh.rest[hex[0]].x[axis] >> quantum_bits;
+  }
+  shape.output = hex_terms(hex_corners(mesh.nodes, hex, shape.from));
+  shape.source = hex_terms(hex_corners(mesh.rest, hex, shape.whole));
+  return shape;
+}
+
+/// @param tet  setup of t
+TETWARP_HD HexStart make_hex_start(const HexMesh& mesh,
+                                   const HexShape& shape,
+                                   std::int64_t t,
+                                   const TetSetup& tet) {
+  const std::int32_t* const hex = mesh.hexes.nodes_of(t);
+  HexStart start = {};
+  for (int face = 0; face < 4; ++face) {
+    int a = 0;
+    while (a < 7 && hex[a] != mesh.tets[4 * t + face]) ++a;
+    const double per_height = 1.0 / tet.height[face];
+    double at_origin = tet.plane[3][face];
+    for (int axis = 0; axis < 3; ++axis) {
+      at_origin += tet.plane[axis][face] * static_cast<double>(shape.from[axis] - tet.anchor[axis]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (unit_corner(a, axis) == 0) continue;
+      for (int term = 0; term < 3; ++term) {
+        start.at[term][axis] += tet.plane[term][face] * per_height;
+      }
+      start.at[3][axis] += at_origin * per_height;
+    }
+  }
+  return start;
+}
+
 /// The map of the hexahedron that tetrahedron t is part of.
 /// @param tet  setup of t
 /// @pre mesh.hexes.has(t)
 TETWARP_HD HexMap make_hex_map(const HexMesh& mesh, std::int64_t t, const TetSetup& tet) {
-  const std::int32_t* const hex = mesh.hexes.nodes_of(t);
   HexMap map;
-  map.output = hex_corners(mesh.nodes, hex, tet.anchor);
-  for (int axis = 0; axis < 3; ++axis) map.whole[axis] = mesh.rest[hex[0]].x[axis] >> quantum_bits;
-  map.source = hex_corners(mesh.rest, hex, map.whole);
-  for (int n = 0; n < 4; ++n) {
-    int a = 0;
-    while (a < 7 && hex[a] != mesh.tets[4 * t + n]) ++a;
-    for (int axis = 0; axis < 3; ++axis) map.start[n][axis] = unit_corner(a, axis);
-  }
+  map.shape = make_hex_shape(mesh, t);
+  map.start = make_hex_start(mesh, map.shape, t, tet);
   return map;
 }
 
-/// Local coordinates u of frame voxel x.
-/// @param map  of the hexahedron
-/// @param tet  the tetrahedron of it that owns the voxel
-TETWARP_HD_RARE void hex_local(const HexMap& map, const TetSetup& tet, const int* x, double* u) {
+/// Local coordinates u of frame voxel x, which the map's tetrahedron owns.
+TETWARP_HD_RARE void hex_local(const HexMap& map, const int* x, double* u) {
   double target[3];
   for (int axis = 0; axis < 3; ++axis) {
-    target[axis] = static_cast<double>(x[axis] - tet.anchor[axis]);
-    u[axis] = 0;
+    target[axis] = static_cast<double>(x[axis] - map.shape.from[axis]);
   }
-  for (int face = 0; face < 4; ++face) {
-    const double value = tet.plane[0][face] * target[0] + tet.plane[1][face] * target[1] +
-                         tet.plane[2][face] * target[2] + tet.plane[3][face];
-    const double weight = value / tet.height[face];
-    for (int axis = 0; axis < 3; ++axis) u[axis] += weight * map.start[face][axis];
+  const auto& start = map.start.at;
+  for (int axis = 0; axis < 3; ++axis) {
+    u[axis] = ((start[3][axis] + start[1][axis] * target[1]) + start[2][axis] * target[2]) +
+              start[0][axis] * target[0];
   }
-  invert_hex(map.output, target, u);
+  invert_hex(map.shape.output, target, u);
 }
 
 /// Gradient of the source position by the output position at u, both in index space.
@@ -165,8 +233,8 @@ TETWARP_HD_RARE void hex_local(const HexMap& map, const TetSetup& tet, const int
 TETWARP_HD bool hex_gradient(const HexMap& map, const double* u, Matrix3& gradient) {
   double x[3];
   Matrix3 output, source;
-  map_hex(map.output, u, x, output);
-  map_hex(map.source, u, x, source);
+  map_hex(map.shape.output, u, x, output);
+  map_hex(map.shape.source, u, x, source);
   if (determinant(output) == 0) return false;
   gradient = source * inverse(output);
   return true;
@@ -174,17 +242,17 @@ TETWARP_HD bool hex_gradient(const HexMap& map, const double* u, Matrix3& gradie
 
 /// Source position of frame voxel x, as an integer voxel `whole` plus a local part `at`; other
 /// parameters as hex_local().
-TETWARP_HD void hex_source_position(
-    const TetSetup& tet, const HexMap& map, const int* x, int* whole, double* at) {
+TETWARP_HD void hex_source_position(const HexMap& map, const int* x, int* whole, double* at) {
   double u[3];
   Matrix3 gradient;
-  hex_local(map, tet, x, u);
-  map_hex(map.source, u, at, gradient);
+  hex_local(map, x, u);
+  map_hex(map.shape.source, u, at, gradient);
   for (int axis = 0; axis < 3; ++axis) {
-    const double all = floor(at[axis]) + static_cast<double>(map.whole[axis]);
+    const auto first = static_cast<double>(map.shape.whole[axis]);
+    const double all = floor(at[axis]) + first;
     const double near = min_of(max_of(all, -max_whole), max_whole);
     whole[axis] = static_cast<int>(near);
-    at[axis] -= near - static_cast<double>(map.whole[axis]);
+    at[axis] -= near - first;
   }
 }
 

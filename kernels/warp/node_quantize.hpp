@@ -69,8 +69,8 @@ void node_quantize(Exec& exec,
                    const std::int64_t* frame,
                    View<const double> positions,
                    View<Node> nodes) {
-  NodeQuantizeOp body{map, {frame[0], frame[1], frame[2]}, positions, nodes};
-  exec.for_each("warp/setup", nodes.size, body);
+  NodeQuantizeOp op{map, {frame[0], frame[1], frame[2]}, positions, nodes};
+  exec.for_each("warp/setup", nodes.size, op);
 }
 
 }  // namespace tetwarp

@@ -42,8 +42,8 @@ struct PackSourceOp {
 
 /// Packs a source. Cost: three to five times its bytes, once per source. Same bits everywhere.
 template <class Exec, class T>
-void pack_source(Exec& exec, const PackSourceOp<T>& body) {
-  exec.for_each("warp/upload", body.packed.size, body);
+void pack_source(Exec& exec, const PackSourceOp<T>& op) {
+  exec.for_each("warp/upload", op.packed.size, op);
 }
 
 }  // namespace tetwarp

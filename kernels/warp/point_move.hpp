@@ -144,9 +144,9 @@ TETWARP_HD_RARE Vec3 hex_motion(const MovedNodes& nodes,
     while (a < 7 && hex[a] != tet[n]) ++a;
     for (int axis = 0; axis < 3; ++axis) u[axis] += weights.of[n] * unit_corner(a, axis);
   }
-  invert_hex(from, target, u);
+  invert_hex(hex_terms(from), target, u);
   Matrix3 gradient;
-  map_hex(motion, u, mean, gradient);
+  map_hex(hex_terms(motion), u, mean, gradient);
   return vec3_of(mean);
 }
 
@@ -209,8 +209,8 @@ struct PointMoveOp {
 /// ends, in hexahedra within 2^-36. Cost: about four tetrahedra tested per point, 128 bytes each.
 /// Source: ours.
 template <class Exec>
-void point_move(Exec& exec, const PointMoveOp& body) {
-  exec.for_each("points/move", body.owners.size, body);
+void point_move(Exec& exec, const PointMoveOp& op) {
+  exec.for_each("points/move", op.owners.size, op);
 }
 
 }  // namespace tetwarp

@@ -320,8 +320,8 @@ struct TetSetupOp {
 /// back ends. Cost: about 150 integer multiplications, 330 bytes written per tetrahedron.
 /// Source: Gascon et al. 2013, section 3; the integer setup is ours.
 template <class Exec>
-void tet_setup(Exec& exec, const TetSetupOp& body) {
-  exec.for_each("warp/setup", body.setups.size, body);
+void tet_setup(Exec& exec, const TetSetupOp& op) {
+  exec.for_each("warp/setup", op.setups.size, op);
 }
 
 }  // namespace tetwarp

@@ -65,13 +65,12 @@ TETWARP_HD void displacement_of(const DisplacementMap& map,
 /// Strain at a voxel of a hexahedron. Out of line to limit registers.
 /// @param strain  in: strain of the owning tetrahedron, kept where the trilinear map is singular
 TETWARP_HD_RARE void set_hex_strain(const HexMap& hex,
-                                    const TetSetup& tet,
                                     const GridAxes& axes,
                                     const int* voxel,
                                     TetStrain& strain) {
   double u[3];
   Matrix3 backward;
-  hex_local(hex, tet, voxel, u);
+  hex_local(hex, voxel, u);
   if (hex_gradient(hex, u, backward)) {
     strain = strain_of(axes.source * backward * axes.output_index);
   }
@@ -188,14 +187,13 @@ struct VoxelFieldsJob {
                                const int* first,
                                std::int64_t at,
                                int count) const {
-    const TetSetup& tet = setups[owner];
-    const HexMap hex = make_hex_map(mesh, owner, tet);
+    const HexMap hex = make_hex_map(mesh, owner, setups[owner]);
     int voxel[3] = {first[0], first[1], first[2]};
     for (int v = 0; v < count; ++v, ++voxel[0]) {
       if (fields.displacement != nullptr) {
         int whole[3];
         double position[3], displacement[3];
-        hex_source_position(tet, hex, voxel, whole, position);
+        hex_source_position(hex, voxel, whole, position);
         for (int axis = 0; axis < 3; ++axis) position[axis] += whole[axis];
         displacement_of(map, voxel, position, displacement);
         for (int r = 0; r < 3; ++r) {
@@ -204,7 +202,7 @@ struct VoxelFieldsJob {
       }
       if (strains.size == 0) continue;
       TetStrain strain = strains[owner];
-      set_hex_strain(hex, tet, axes, voxel, strain);
+      set_hex_strain(hex, axes, voxel, strain);
       repeat(strain, at + v, 1);
     }
   }

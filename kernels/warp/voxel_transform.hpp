@@ -222,7 +222,7 @@ TETWARP_HD_RARE void store_transformed_voxel(const RasterJob<T>& job,
   if (job.setups[t].kind == MapKind::trilinear) {
     const int frame_voxel[3] = {voxel.corner[0] + voxel.i, voxel.corner[1] + voxel.j,
                                 voxel.corner[2] + voxel.k};
-    hex_source_position(job.setups[t], hex_map_of(job, t), frame_voxel, map.whole, x);
+    hex_source_position(hex_map_of(job, t), frame_voxel, map.whole, x);
     for (int row = 0; row < 3; ++row) map.whole[row] -= job.source.origin[row];
   }
   T* const out = job.volume + voxel.offset * job.source.components;

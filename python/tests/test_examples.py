@@ -53,6 +53,20 @@ def test_examples_run(name, written, tmp_path):
     assert "WarpResult" in done.stdout
 
 
+def test_nodes_are_registered():
+    if not EXAMPLES.exists():
+        pytest.skip("no folder examples beside the tests")
+
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / "register_nodes.py"], text=True, capture_output=True,
+        env=os.environ | {"PYTHONPATH": str(Path(tetwarp.__file__).parents[1])}, check=False,
+    )
+
+    assert done.returncode == 0, done.stderr
+    error = float(done.stdout.split("found with an error of ")[1].split(",")[0])
+    assert error < 0.005
+
+
 def test_the_module_has_stubs():
     folder = tetwarp.__path__[0]
     stub = open(f"{folder}/_core.pyi", encoding="utf8").read()

@@ -19,6 +19,7 @@ from ._fields import (
 from ._files import MeshFile, VolumeHeader, read, read_header, write
 from ._grid import Grid
 from ._mesh import Mesh, Surface, boundary_surface, deform, isosurface, lattice_mesh
+from ._operator import WarpOperator
 from ._simulate import Contacts, Simulator, StepRecord, shipped_scene, shipped_scenes
 from ._volume import Volume, phantom
 from ._warp import Warper, WarpResult, warp
@@ -41,6 +42,7 @@ __all__ = [
     "Surface",
     "Volume",
     "VolumeHeader",
+    "WarpOperator",
     "WarpResult",
     "Warper",
     "available_backends",

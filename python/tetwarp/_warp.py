@@ -123,7 +123,9 @@ class Warper:
         ``"labels"`` (64-bit integers: ``"nearest"`` and ``"labels"`` only)
     default_value : of voxels that no cell covers
     outside : ``"background"``: they get `default_value`; ``"identity"``: the source at the same
-        position
+        position; ``"nearest"``: the source displaced as the nearest point of the mesh's surface;
+        ``"falloff"``: the same with displacements that fall to zero smoothly over `falloff`
+    falloff : that distance, above 0 [world]
     reference : Grid of the output, or something that has one: a Volume, a result, an image of
         nibabel or SimpleITK; None: the grid of the source
     overshoot : ``"keep"``, or ``"clamp"`` to the range of the samples
@@ -167,6 +169,7 @@ class Warper:
         interpolator: str = "linear",
         default_value: float = 0.0,
         outside: str = "background",
+        falloff: float = 0.0,
         reference: Any = None,
         overshoot: str = "keep",
         antialias: bool = False,
@@ -187,7 +190,7 @@ class Warper:
             *cells_of(cells, "cells", len(points)),
             interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
             intensity=intensity, quantities=_quantities_of(quantity, len(sources)),
-            outside=outside, default_value=number_of(default_value, "default_value"),
+            outside=outside, falloff=number_of(falloff, "falloff"), default_value=number_of(default_value, "default_value"),
             output_grid=None if reference is None else reference_grid(reference)._core(),
             backend=backend, device=int(device), threads=int(threads),
         )
@@ -322,8 +325,8 @@ def warp(
     default_value : of voxels that no cell covers
     reference : Grid of the output, or something that has one; None: the grid of the source
     out, outputs, progress : see Warper.__call__
-    options : the other keywords of Warper: outside, overshoot, antialias, intensity, quantity,
-        backend, device, threads
+    options : the other keywords of Warper: outside, falloff, overshoot, antialias, intensity,
+        quantity, backend, device, threads
 
     Returns
     -------

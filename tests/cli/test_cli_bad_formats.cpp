@@ -38,7 +38,8 @@ TEST(BadFormats, AreNamedWithARemedy) {
   }
   for (const BadFile& bad : std::vector<BadFile>{
            {"b.pvtu", "<?xml", "b.pvtu: is a mesh in several files, which is not read; convert it"},
-           {"b.pvd", "<?xml", "b.pvd: is a list of VTK files, which is not read; name one of its"},
+           {"b.xdmf", "<?xml",
+            "b.xdmf: is a XDMF mesh, which is not read; convert it to .vtu, .vtk"},
            {"b.inp", "*NODE\n", "b.inp: is a Abaqus mesh, which is not read; convert it to .vtu"},
            {"b.stl", "solid", "b.stl: is a surface, which is not read; make a mesh of tetrahedra"},
            {"b.vtkhdf", "", "b.vtkhdf: is empty, expected a mesh; copy it again"}}) {

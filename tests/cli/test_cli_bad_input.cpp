@@ -127,6 +127,30 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
   }
 }
 
+/// Whatever the end of its name says.
+TEST(BadInput, RefusesAFolderAsAnyInput) {
+  const Scene scene;
+  for (const std::string end :
+       {"csv", "fcsv", "h5",  "mat", "mha", "mrk.json", "msh", "nii",    "nii.gz", "nrrd",
+        "obj", "ply",  "stl", "tfm", "tsv", "txt",      "vtk", "vtkhdf", "vtp",    "vtu"}) {
+    const std::string folder = "folder." + end;
+    fs::create_directory(scene / folder);
+    for (const Names& command :
+         std::vector<Names>{{"warp", folder, "mesh.vtkhdf", "-o", "a.vtkhdf"},
+                            {"warp", "volume.vtkhdf", folder, "-o", "a.vtkhdf"},
+                            {"points", folder, "mesh.vtkhdf", "-o", "a.csv"},
+                            {"import", folder, "-o", "a.vtkhdf"},
+                            {"contact", folder, "-o", "a.h5"}}) {
+      expect_refused(scene, {command, folder + ": "}, 1);
+    }
+  }
+  fs::create_directory(scene / "folder.json");
+  expect_refused(scene, {{"simulate", "folder.json", "-o", "a"}, "folder.json: is a folder"}, 1);
+  expect_refused(scene, {{"warp", "--batch", "folder.json"}, "folder.json: is a folder"}, 1);
+  fs::create_directory(scene / "mouth");
+  expect_refused(scene, {{"simulate", "mouth", "-o", "a"}, "give --scene mouth"}, 1);
+}
+
 TEST(BadInput, RefusesALinkToAnInputAsOutput) {
   const Scene scene;
   fs::create_symlink(scene / "volume.vtkhdf", scene / "link.vtkhdf");

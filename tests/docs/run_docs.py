@@ -2,7 +2,7 @@
 """Runs what the documentation shows: README.md, the other pages at the root and docs/*.md.
 
     run_docs.py extract ROOT FILE    writes the C++ blocks of all pages as one program
-    run_docs.py run ROOT --command FILE --blocks PROGRAM [--mpirun FILE] [--has gmsh] [--has vtk]
+    run_docs.py run ROOT --command FILE --blocks PROGRAM [--mpirun FILE] [--has gmsh] [--has view] [--has vtk]
                 [--python FILE --package FOLDER]
 
 Blocks of a page run in order in one empty folder, which holds head.nii.gz and labels.nii.gz; blocks
@@ -25,7 +25,7 @@ from small_images import write_images
 
 MOST_NOT_RUN = 10
 LARGEST_PICTURE = 150 * 1024  # bytes
-LIBRARIES = ("gmsh", "vtk")  # that a build may be without
+LIBRARIES = ("gmsh", "view", "vtk")  # that a build may be without
 SECONDS = 60  # that a block may take
 SOURCE_FOLDERS = ("bench", "cmake", "docs", "examples", "host", "io", "kernels", "python", "tests")
 

@@ -64,7 +64,7 @@ TEST(ContactEmulated, SmallIslandsTakeOneLaunchAndThreeReads) {
 }
 
 /// Every method, by one launch on the whole device and stage by stage.
-TEST(ContactEmulated, LargeIslandsHaveTheSameBitsWithAndWithoutSynchronizedGrids) {
+TEST(LongContactEmulated, LargeIslandsHaveTheSameBitsWithAndWithoutSynchronizedGrids) {
   const ContactProblem problem =
       scenes::random_local({.seed = 325, .contacts = 2049, .neighbors = 2});
   const ContactProblem stack = scenes::box_stack({.boxes = 513});

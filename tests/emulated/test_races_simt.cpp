@@ -98,7 +98,7 @@ void expect_all_barriers_needed(std::size_t fewest, const std::function<void()>&
 }
 
 /// The end of a stage, the sum, the decision of Anderson's method.
-TEST(Races, AllBarriersOfAWarpAreNeeded) {
+TEST(LongRaces, AllBarriersOfAWarpAreNeeded) {
   const SweepScene scene(small_local(), false);
   expect_all_barriers_needed(3, [&] {
     IslandSolves<float> solves(scene, {ContactMethod::automatic, 1e-3, 120},
@@ -107,7 +107,7 @@ TEST(Races, AllBarriersOfAWarpAreNeeded) {
     solves.by_blocks(Place::shared_by_warps);
   });
 }
-TEST(Races, AllBarriersOfABlockAreNeeded) {
+TEST(LongRaces, AllBarriersOfABlockAreNeeded) {
   const SweepScene scene(small_local(), false);
   expect_all_barriers_needed(4, [&] {
     IslandSolves<double> solves(scene, {ContactMethod::automatic, 1e-3, 12},
@@ -117,7 +117,7 @@ TEST(Races, AllBarriersOfABlockAreNeeded) {
   GradientRows<double> rows(200);
   expect_all_barriers_needed(3, [&] { rows.by_block<128>(1e-3); });
 }
-TEST(Races, AllBarriersOfAGridAreNeeded) {
+TEST(LongRaces, AllBarriersOfAGridAreNeeded) {
   const SweepScene scene(small_local(60), false);
   GradientRows<double> rows(200);
   expect_all_barriers_needed(5, [&] {

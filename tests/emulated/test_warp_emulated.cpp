@@ -127,7 +127,7 @@ TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
 }
 
 /// The step whose allocation fails needs larger lists.
-TEST(WarpEmulated, AStepAfterAFailedAllocationIsRight) {
+TEST(LongWarpEmulated, AStepAfterAFailedAllocationIsRight) {
   const scenes::Scene scene = scenes::adversarial_scene("tiny", 16);
   const std::vector<Volume> sources = sources_of(scene);
   Series anew(sources, scene, on_device(false));

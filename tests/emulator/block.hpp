@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "tests/emulator/fiber.hpp"
+#include "tests/emulator/launch_observer.hpp"
 #include "tests/emulator/race_order.hpp"
 
 namespace tetwarp::simt {
@@ -186,15 +187,20 @@ class Block {
 
   void run_warp(unsigned first, const std::function<void(unsigned)>& on_resume) {
     const unsigned lane_count = std::min(warp_size, thread_count_ - first);
+    LaunchObserver* const observer = LaunchObserver::current();
     do {
       for (const unsigned lane : ordered(lane_count)) {
         running_ = first + lane;
         if (threads_[running_]->state != State::ready) continue;
         on_resume(running_);
-        threads_[running_]->fiber.resume();
+        Fiber& fiber = threads_[running_]->fiber;
+        if (observer != nullptr) observer->lane_begins(fiber.stack(), Fiber::stack_bytes);
+        fiber.resume();
+        if (observer != nullptr) observer->lane_ends();
         if (fault_) std::rethrow_exception(fault_);
       }
-    } while (complete_exchange(first, lane_count));
+      if (observer != nullptr) observer->warp_paused(first);
+    } while (complete_exchanges(first, lane_count));
   }
 
   void wait(State state, int line) {
@@ -220,7 +226,13 @@ class Block {
     wait(State::at_exchange, line);
   }
 
-  /// Completes one exchange that all its lanes have reached. @returns whether there was one
+  /// Completes the exchanges that all their lanes have reached. @returns whether there was one
+  bool complete_exchanges(unsigned first, unsigned lane_count) {
+    bool is_any = false;
+    while (complete_exchange(first, lane_count)) is_any = true;
+    return is_any;
+  }
+  /// Completes one of them.
   bool complete_exchange(unsigned first, unsigned lane_count) {
     for (unsigned lane = 0; lane < lane_count; ++lane) {
       const Thread& waiting = *threads_[first + lane];
@@ -297,6 +309,7 @@ class Block {
       }
     }
     if (first.state == State::at_grid) return State::at_grid;
+    if (LaunchObserver::current() != nullptr) LaunchObserver::current()->barrier_passed();
     release_order(&at_barrier_);
     acquire_order(&at_barrier_);
     for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <set>
 #include <string>
@@ -160,9 +161,10 @@ class Device {
     if (call == ApiCall::copy_to_host) copied_.to_host += size;
   }
 
-  /// @returns memory filled with 0xcd
+  /// @returns memory filled with 0xcd, aligned as that of a device
   void* allocate(std::size_t size, bool is_pinned) {
-    auto memory = std::make_unique<std::byte[]>(std::max<std::size_t>(size, 1));
+    std::unique_ptr<std::byte[], Free> memory(new (std::align_val_t{alignment})
+                                                  std::byte[std::max<std::size_t>(size, 1)]);
     std::memset(memory.get(), 0xcd, size);
     std::byte* const data = memory.get();
     memory_[data] = {std::move(memory), size, is_pinned};
@@ -178,6 +180,15 @@ class Device {
     std::size_t sum = 0;
     for (const auto& [begin, memory] : memory_) sum += memory.is_pinned ? 0 : memory.size;
     return sum;
+  }
+  /// First and one past the last byte of each piece of its memory, in ascending order.
+  std::vector<std::pair<std::uintptr_t, std::uintptr_t>> ranges() const {
+    std::vector<std::pair<std::uintptr_t, std::uintptr_t>> found;
+    for (const auto& [begin, memory] : memory_) {
+      const auto first = reinterpret_cast<std::uintptr_t>(begin);
+      if (!memory.is_pinned) found.emplace_back(first, first + memory.size);
+    }
+    return found;
   }
   bool is_on_device(const void* data, std::size_t size) const {
     return is_within(data, size, false);
@@ -229,8 +240,14 @@ class Device {
   }
 
  private:
+  static constexpr std::size_t alignment = 256;
+  struct Free {
+    void operator()(std::byte* bytes) const {
+      ::operator delete[](bytes, std::align_val_t{alignment});
+    }
+  };
   struct Memory {
-    std::unique_ptr<std::byte[]> bytes;
+    std::unique_ptr<std::byte[], Free> bytes;
     std::size_t size;
     bool is_pinned;
   };

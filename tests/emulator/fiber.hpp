@@ -80,9 +80,12 @@ class Fiber {
     return race_;
   }
 
- private:
   static constexpr std::size_t stack_bytes = std::size_t{128} * 1024;
+  const std::byte* stack() const {
+    return stack_.get();
+  }
 
+ private:
   struct StackRange {
     const void* bottom = nullptr;
     std::size_t size = 0;

@@ -19,6 +19,7 @@
 #include <numeric>
 #include <string>
 #include <type_traits>
+#include <typeinfo>
 #include <vector>
 
 #include "tests/emulator/block.hpp"
@@ -198,18 +199,25 @@ inline void check_launch(dim3 grid,
 /// Grids of fewer blocks run on one OS thread: waking other threads would take longer.
 constexpr std::int64_t fewest_parallel_blocks = 64;
 
-/// Runs a kernel to its end: blocks in parallel on OS threads, threads of a block by schedule().
+/// Runs a kernel to its end: blocks in parallel on OS threads, unless it is observed, threads of a
+/// block by schedule().
 /// @throws Fault if a block has one
 template <class Kernel, class... Args>
 void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, const Args&... args) {
   check_launch(grid, block, shared_bytes, shared_limit(reinterpret_cast<const void*>(kernel)));
   const std::int64_t slice = std::int64_t{grid.x} * grid.y;
   const std::int64_t block_count = slice * grid.z;
-  const bool is_parallel =
-      !has_address_sanitizer && !has_thread_sanitizer && block_count >= fewest_parallel_blocks;
+  LaunchObserver* const observer = LaunchObserver::current();
+  const bool is_parallel = !has_address_sanitizer && !has_thread_sanitizer && observer == nullptr &&
+                           block_count >= fewest_parallel_blocks;
+  if (observer != nullptr) {
+    observer->launch_begins(typeid(kernel).name(), block_count,
+                            std::int64_t{block.x} * block.y * block.z);
+  }
   std::exception_ptr fault;
 #pragma omp parallel for schedule(dynamic) if (is_parallel)
   for (std::int64_t b = 0; b < block_count; ++b) {
+    if (observer != nullptr && !observer->runs(b)) continue;
     blockIdx = {static_cast<unsigned>(b % grid.x), static_cast<unsigned>(b % slice / grid.x),
                 static_cast<unsigned>(b / slice)};
     blockDim = block;
@@ -222,12 +230,14 @@ void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, cons
     try {
       Block::current().run(
           block.x * block.y * block.z, shared_bytes, own, [&] { kernel(args...); }, set_thread);
+      if (observer != nullptr) observer->block_ends();
     } catch (...) {
 #pragma omp critical
       fault = std::current_exception();
     }
   }
   if (fault) std::rethrow_exception(fault);
+  if (observer != nullptr) observer->launch_ends();
 }
 
 /// Runs a kernel whose blocks are all resident and may wait for each other, on one OS thread, each

@@ -91,6 +91,7 @@ bool fuzz(int seconds, std::uint64_t seed, const std::string& choice) {
   setenv("TETWARP_READER", FUZZ_MESH_READER, 1);
   setenv("FUZZ_MESH_TRACE", (folder / "trace").c_str(), 1);
   const std::vector<test::ForeignMesh> meshes = chosen_meshes(choice);
+  std::ofstream(folder / test::listed_part.name, std::ios::binary) << test::listed_part.content;
   read_good(folder, meshes);
   Counts counts;
   const auto end = Clock::now() + std::chrono::seconds(seconds);

@@ -164,6 +164,27 @@ inline std::string msh4_binary() {
          packed(Sizes{2, 7, 10, 20, 30, 40, 8, 20, 30, 40, 50}) + "\n$EndElements\n";
 }
 
+/// The file that the lists below name; it stays as it is.
+inline const ForeignMesh listed_part = {"", "part.vtu", xml_mesh(false)};
+
+inline std::string pvd_list() {
+  return "<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n"
+         "<DataSet timestep=\"0.5\" part=\"0\" file=\"part.vtu\"/>\n"
+         "<DataSet timestep=\"2\" part=\"0\" file=\"part.vtu\"/>\n"
+         "</Collection>\n</VTKFile>\n";
+}
+
+inline std::string series_list() {
+  return "{\"file-series-version\": \"1.0\", \"files\": [\n{\"name\": \"part.vtu\", \"time\": "
+         "0.5},\n{\"name\": \"part.vtu\", \"time\": 2}]}\n";
+}
+
+inline std::string vtm_list() {
+  return "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+         "<vtkMultiBlockDataSet>\n<DataSet index=\"0\" file=\"part.vtu\"/>\n"
+         "<DataSet index=\"1\" file=\"part.vtu\"/>\n</vtkMultiBlockDataSet>\n</VTKFile>\n";
+}
+
 inline std::vector<ForeignMesh> foreign_meshes() {
   return {{"vtk", "a.vtk", legacy_text()},
           {"vtk-offsets", "b.vtk", legacy_text_with_offsets()},
@@ -174,7 +195,10 @@ inline std::vector<ForeignMesh> foreign_meshes() {
           {"msh2", "g.msh", msh2_text()},
           {"msh2-binary", "h.msh", msh2_binary()},
           {"msh4", "i.msh", msh4_text()},
-          {"msh4-binary", "j.msh", msh4_binary()}};
+          {"msh4-binary", "j.msh", msh4_binary()},
+          {"pvd", "k.pvd", pvd_list()},
+          {"series", "l.vtu.series", series_list()},
+          {"vtm", "m.vtm", vtm_list()}};
 }
 
 }  // namespace tetwarp::test

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <tetwarp/io.hpp>
 #include <tetwarp/mesh_import.hpp>
 #include <tetwarp/warp.hpp>
 
@@ -105,8 +106,6 @@ class MeshImport : public ::testing::Test {
   }
 
   std::string error;
-
- private:
   ScratchFolder folder_;
 };
 
@@ -294,11 +293,163 @@ TEST_F(MeshImport, WorksBesideOtherThreads) {
   }
 }
 
+/// Cells of VTK by their types, all with the nodes 0, 1, 2 and so on of `places`.
+std::string legacy_cells(const std::string& places,
+                         int place_count,
+                         const std::vector<std::pair<int, int>>& types) {
+  std::string cells, list;
+  int numbers = 0;
+  for (const auto& [type, count] : types) {
+    cells += std::to_string(count);
+    for (int n = 0; n < count; ++n) cells += " " + std::to_string(n);
+    cells += "\n";
+    list += std::to_string(type) + "\n";
+    numbers += count + 1;
+  }
+  const std::string amount = std::to_string(types.size());
+  return "# vtk DataFile Version 3.0\ncells\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+         std::to_string(place_count) + " double\n" + places + "\nCELLS " + amount + " " +
+         std::to_string(numbers) + "\n" + cells + "CELL_TYPES " + amount + "\n" + list;
+}
+
+/// Signed volume of a tetrahedron, times six.
+double volume6_of(const Mesh& mesh, const std::array<std::int32_t, 4>& tet) {
+  const auto side = [&](std::size_t a, std::size_t axis) {
+    const auto at = [&](std::size_t n) {
+      return mesh.rest_positions[static_cast<std::size_t>(tet[n])][axis];
+    };
+    return at(a) - at(0);
+  };
+  double volume = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t next = (axis + 1) % 3, last = (axis + 2) % 3;
+    volume += side(1, axis) * (side(2, next) * side(3, last) - side(2, last) * side(3, next));
+  }
+  return volume;
+}
+
+/// Voxel cells are hexahedra in another order; wedges and pyramids are hexahedra with repeated
+/// nodes.
+TEST_F(MeshImport, MakesHexahedraOfVoxelsWedgesAndPyramids) {
+  const auto mesh =
+      imported("a.vtk", legacy_cells("0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1", 8,
+                                     {{11, 8}, {13, 6}, {14, 5}}));
+  if (!mesh) GTEST_SKIP() << error;
+
+  EXPECT_EQ(mesh->mesh.hexes,
+            (std::vector<std::array<std::int32_t, 8>>{
+                {0, 1, 3, 2, 4, 5, 7, 6}, {0, 1, 2, 2, 3, 4, 5, 5}, {0, 1, 2, 3, 4, 4, 4, 4}}));
+  EXPECT_EQ(numbers_of(mesh->arrays.back()), (std::vector<std::int64_t>{0, 1, 2}));
+}
+
+/// The eight parts fill the cell, as the four nodes of its corners do, in their orientation.
+TEST_F(MeshImport, CutsTetrahedraOfTenNodesAtTheirNodes) {
+  const auto vtk = imported(
+      "a.vtk",
+      legacy_cells("0 0 0 2 0 0 0 2 0 0 0 2 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 0 1 1", 10, {{24, 10}}));
+  const auto gmsh = imported(
+      "b.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n"
+      "5 1 0 0\n6 1 1 0\n7 0 1 0\n8 0 0 1\n9 0 1 1\n10 1 0 1\n$EndNodes\n$Elements\n1\n"
+      "1 11 2 0 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
+  for (const auto& mesh : {vtk, gmsh}) {
+    if (!mesh) continue;
+    ASSERT_EQ(mesh->mesh.tets.size(), 8U);
+    double sum = 0;
+    for (const auto& tet : mesh->mesh.tets) {
+      EXPECT_DOUBLE_EQ(volume6_of(mesh->mesh, tet), 1);
+      sum += volume6_of(mesh->mesh, tet);
+    }
+    EXPECT_DOUBLE_EQ(sum, 8);
+  }
+}
+
+/// A list, a series and numbered files of one mesh whose points move, and one of its blocks.
+TEST_F(MeshImport, ReadsSeriesOfFilesAndMovingPoints) {
+  const auto moved = [](double by) {
+    std::string text = legacy_file("u");
+    const std::string last = "1 1 1";
+    return text.replace(text.find(last), last.size(), std::to_string(1 + by) + " 1 1");
+  };
+  for (const auto& [name, by] : {std::pair{"s_10.vtk", 2.0}, {"s_9.vtk", 1.0}, {"s_8.vtk", 0.0}}) {
+    std::ofstream(folder_ / name) << moved(by);
+  }
+  const auto list =
+      imported("a.pvd",
+               "<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection>"
+               "<DataSet timestep=\"0.5\" part=\"0\" file=\"s_9.vtk\"/>"
+               "<DataSet timestep=\"0.25\" part=\"0\" file=\"s_8.vtk\"/>"
+               "<DataSet timestep=\"4\" part=\"0\" file=\"s_10.vtk\"/></Collection></VTKFile>");
+  if (!list) GTEST_SKIP() << error;
+  const auto series = imported("a.vtk.series",
+                               R"({"file-series-version": "1.0", "files": [
+      {"name": "s_8.vtk", "time": 0.25}, {"name": "s_9.vtk", "time": 0.5},
+      {"name": "s_10.vtk", "time": 4}]})");
+  const ImportedMesh numbered = import_mesh(folder_ / "s_*.vtk");
+  const ImportedMesh named = import_mesh(folder_ / "s_*.vtk", {.displacement = "u"});
+
+  ASSERT_TRUE(series);
+  for (const ImportedMesh& mesh : {*list, *series, numbered}) {
+    ASSERT_EQ(mesh.displacements.size(), 3U);
+    EXPECT_TRUE(mesh.moves_points);
+    for (std::size_t step = 0; step < 3; ++step) {
+      EXPECT_EQ(mesh.displacements[step][0], (Point3{0, 0, 0}));
+      EXPECT_EQ(mesh.displacements[step][4], (Point3{static_cast<double>(step), 0, 0}));
+    }
+  }
+  EXPECT_EQ(list->times, (std::vector<double>{0.25, 0.5, 4}));
+  EXPECT_EQ(series->times, list->times);
+  EXPECT_EQ(numbered.times, (std::vector<double>{0, 1, 2}));
+  EXPECT_FALSE(named.moves_points);
+  EXPECT_EQ(named.displacements[1][4], (Point3{4, 8, 12}));
+
+  const MeshReader reader(folder_ / "a.pvd", {.rest_step = 1});
+  EXPECT_TRUE(reader.header().has_moving_points);
+  EXPECT_EQ(reader.mesh().rest_positions[4], (Point3{2, 1, 1}));
+  EXPECT_EQ(reader.read_step(2)[4], (Point3{3, 1, 1}));
+}
+
+TEST_F(MeshImport, RefusesDamagedSeriesInOneLine) {
+  if (!imported("s.vtk", legacy_file())) GTEST_SKIP() << error;
+  std::string other = legacy_file();
+  other.replace(other.find("4 0 1 2 3"), 9, "4 0 1 2 4");
+  std::ofstream(folder_ / "t.vtk") << other;
+  const auto pvd = [](const std::string& entries) {
+    return "<VTKFile type=\"Collection\"><Collection>" + entries + "</Collection></VTKFile>";
+  };
+  const struct {
+    const char* name;
+    std::string text;
+    const char* expected;
+  } cases[] = {
+      {"a.pvd", "", "holds no <Collection>"},
+      {"b.pvd", pvd(""), "lists no file"},
+      {"c.pvd", pvd("<DataSet timestep=\"0\"/>"), "without a file"},
+      {"d.pvd", pvd("<DataSet timestep=\"x\" file=\"s.vtk\"/>"), "no number"},
+      {"e.pvd", pvd("<DataSet timestep=\"0\" file=\"none.vtk\"/>"), "a list of steps names it"},
+      {"f.pvd", pvd("<DataSet timestep=\"0\" file=\"x.stl\"/>"), "a list of steps names it"},
+      {"g.pvd",
+       pvd("<DataSet timestep=\"0\" file=\"s.vtk\"/><DataSet timestep=\"1\" file=\"t.vtk\"/>"),
+       "step 1 has other points or cells"},
+      {"h.vtk.series", "{}", "no list 'files'"},
+      {"i.vtk.series", R"({"files": [{"time": 1}]})", "without a name"},
+      {"j.vtm", "<VTKFile", "no unstructured grid"},
+      {"k.exo", "CDF", "no unstructured grid"},
+  };
+  for (const auto& bad : cases) {
+    const std::string message = complaint(bad.name, bad.text);
+    EXPECT_NE(message.find(bad.expected), std::string::npos) << bad.name << ": " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  EXPECT_NE(io_error([&] { import_mesh(folder_ / "none_*.vtk"); }).find("no file has such a name"),
+            std::string::npos);
+}
+
 TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
-  std::string wedge = legacy_file();
-  wedge.replace(wedge.find("4 1 2 3 4\n"), 10, "6 0 1 2 3 0 1\n");
-  wedge.replace(wedge.find("3 14"), 4, "3 16");
-  wedge.replace(wedge.find("5\n10\n"), 5, "5\n13\n");
+  std::string curved = legacy_file();
+  curved.replace(curved.find("4 1 2 3 4\n"), 10, "6 0 1 2 3 0 1\n");
+  curved.replace(curved.find("3 14"), 4, "3 16");
+  curved.replace(curved.find("5\n10\n"), 5, "5\n25\n");
   std::string surface = legacy_file();
   surface.replace(surface.find("CELLS"), surface.find("POINT_DATA") - surface.find("CELLS"),
                   "CELLS 1 4\n3 1 2 3\nCELL_TYPES 1\n5\n");
@@ -328,7 +479,7 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
       {"p.msh", twin, {}, "Gmsh cannot read it: Wrong node index 50"},
       {"r.msh", negative_node, {}, "read"},  // Gmsh 4.8 crashes
       {"q.vtk", no_number, {}, "no unstructured grid that VTK can read: damaged"},
-      {"a.vtk", wedge, {}, "cell 2 is a vtkWedge"},
+      {"a.vtk", curved, {}, "cell 2 is a vtkQuadraticHexahedron"},
       {"b.vtk", surface, {}, "holds no tetrahedron"},
       {"s.vtk", short_cell, {}, "cell 0 does not have the nodes of a vtkTetra, each from 0 to 4"},
       {"t.vtk", stray_node, {}, "cell 2 does not have the nodes of a vtkTetra, each from 0 to 4"},
@@ -337,7 +488,10 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
       {"e.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", {}, "no unstructured"},
       {"f.vtu", xml_file().substr(0, 700), {}, "no unstructured grid"},
       {"g.msh", "SystemCall \"true\";\n", {}, "does not begin with $MeshFormat"},
-      {"h.msh", msh2_file("8 7 2 0 1 10 20 30 40 50"), {}, "cell 8 is a Pyramid"},
+      {"h.msh",
+       msh2_file("8 19 2 0 1 10 20 30 40 50 10 20 30 40 50 10 20 30"),
+       {},
+       "cell 8 is a Pyramid"},
       {"i.msh", msh2_file(), {.displacement = "u"}, "the file has displacement"},
   };
   for (const auto& bad : cases) {
@@ -349,7 +503,7 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
     EXPECT_NE(message.find(bad.expected), std::string::npos) << bad.name << ": " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
-  EXPECT_NE(complaint("j.xyz", "").find(".msh, .vtu or .vtk"), std::string::npos);
+  EXPECT_NE(complaint("j.xyz", "").find(".msh, .vtu, .vtk"), std::string::npos);
 }
 }  // namespace
 }  // namespace tetwarp::test

@@ -17,7 +17,7 @@ PUBLIC = ("host/tetwarp", "io/tetwarp", "kernels/base/tetwarp")
 VARIANTS = ("cuda", "nocuda", "cpu", "reference", "avx2", "avx512", "base", "gif", "nogif", "gmsh",
             "nogmsh", "mpi", "nompi", "vtk", "novtk")
 # Programs: main and its subcommands have no header.
-PROGRAMS = re.compile(r"(host/cli|io/reader)/(main|(\w+/)?cmd_\w+)\.cpp")
+PROGRAMS = re.compile(r"(host/cli|host/view/window|io/reader)/(main|(\w+/)?cmd_\w+)\.cpp")
 # Other files whose functions a header of another name declares, by this header.
 DECLARED_IN = {
     # Public headers of several subjects: a file for each, in the folder of the subject.

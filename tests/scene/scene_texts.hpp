@@ -88,7 +88,8 @@ inline const char* const full_scene = R"({
   ],
   "solver": {"contact_tolerance": 1e-5, "linear_tolerance": 1e-8, "max_passes": 3,
     "max_substeps": 4, "law": "pyramid", "rule": "restrictive", "sleeping": true},
-  "output": {"every": 5, "fields": ["velocity", "stress"]}
+  "output": {"every": 5, "fields": ["velocity", "stress"]},
+  "camera": {"eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0], "angle": 0.75}
 })";
 
 /// The least that a scene can be.

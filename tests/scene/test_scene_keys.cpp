@@ -29,6 +29,10 @@ TEST(SceneKeys, OfTheScene) {
   EXPECT_TRUE(full().solver.sleeping);
   EXPECT_EQ(full().output.every, 5);
   EXPECT_EQ(full().output.fields, (std::vector<std::string>{"velocity", "stress"}));
+  EXPECT_EQ(full().camera->eye, (Point3{1, 2, 3}));
+  EXPECT_EQ(full().camera->target, (Point3{4, 5, 6}));
+  EXPECT_EQ(full().camera->up, (Point3{0, 1, 0}));
+  EXPECT_EQ(full().camera->angle, 0.75);
 }
 
 TEST(SceneKeys, HaveDefaults) {
@@ -42,7 +46,7 @@ TEST(SceneKeys, HaveDefaults) {
   EXPECT_EQ(scene.solver.max_passes, 5);
   EXPECT_EQ(scene.solver.max_substeps, 16);
   EXPECT_FALSE(scene.solver.pyramid || scene.solver.restrictive || scene.solver.sleeping);
-  EXPECT_FALSE(scene.output.every);
+  EXPECT_FALSE(scene.output.every || scene.camera);
   EXPECT_EQ(scene.output.rate, 30);
   const Body& ball = scene.bodies[0];
   EXPECT_TRUE(ball.collide);

@@ -82,10 +82,10 @@ TEST(HexMap, FindsThePlaceThatTheTrilinearMapTakesToAPoint) {
       expected[axis] = 1.2 * scenes::uniform(seed, 100 + axis) - 0.1;
     }
     Matrix3 gradient;
-    map_hex(hex, expected, x, gradient);
+    map_hex(hex_terms(hex), expected, x, gradient);
     if (determinant(gradient) < 50) continue;  // of 1000 when it is a cube: nearly folded there
 
-    invert_hex(hex, x, u);
+    invert_hex(hex_terms(hex), x, u);
 
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(u[axis], expected[axis], 1e-9) << seed;
   }
@@ -103,7 +103,7 @@ TEST(HexMap, StaysWithinItsMarginHoweverTheHexahedronIsFolded) {
     const double target[3] = {5, -3, 7};
     double u[3] = {0.1, 0.5, 0.9};
 
-    invert_hex(hex, target, u);
+    invert_hex(hex_terms(hex), target, u);
 
     for (const double coordinate : u) {
       EXPECT_GE(coordinate, -hex_margin) << seed;

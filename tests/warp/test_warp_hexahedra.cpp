@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/warp/hex_split.hpp"
@@ -89,6 +90,31 @@ TEST_P(WarpHexahedra, AreTheReference) {
       }
     }
   }
+}
+
+/// Wedges and pyramids are hexahedra with repeated nodes; their parts that are empty own nothing.
+/// Found: 3.6e-7.
+TEST_P(WarpHexahedra, MayBeWedgesAndPyramids) {
+  if (GetParam() == Backend::reference) GTEST_SKIP() << "the reference is not compared with itself";
+  scenes::Scene scene = bent_scene(2.5);
+  const std::vector<std::array<std::int32_t, 8>> whole = std::exchange(scene.mesh.hexes, {});
+  for (const auto& hex : whole) {
+    if (scene.mesh.hexes.size() % 3 == 0) {  // two wedges
+      scene.mesh.hexes.push_back({hex[0], hex[1], hex[2], hex[2], hex[4], hex[5], hex[6], hex[6]});
+      scene.mesh.hexes.push_back({hex[0], hex[2], hex[3], hex[3], hex[4], hex[6], hex[7], hex[7]});
+    } else {  // a pyramid; the rest of the cube is empty
+      scene.mesh.hexes.push_back({hex[0], hex[1], hex[2], hex[3], hex[6], hex[6], hex[6], hex[6]});
+    }
+  }
+  const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float32);
+  const Warped here = run(source, scene);
+  const Warped judge = run_warp(source, scene, Backend::reference);
+
+  EXPECT_TRUE(here.owner == judge.owner);
+  EXPECT_LE(largest_difference(here.volume, judge.volume), 1e-5);
+  EXPECT_GT(here.counts.covered, edge * edge * edge / 4);
+  EXPECT_EQ(here.counts.inverted, 0);
+  EXPECT_EQ(here.counts.flat, judge.counts.flat);
 }
 
 TEST_P(WarpHexahedra, OwnEveryVoxelBetweenThemOnceAndTellTheCell) {

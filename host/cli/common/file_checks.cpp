@@ -84,23 +84,21 @@ constexpr const char* to_vtu =
     "convert it to .vtu, .vtk or .msh, for example by ParaView or meshio";
 constexpr const char* to_mesh =
     "make a mesh of tetrahedra of it: tetwarp mesh --from-surface, or Gmsh";
-constexpr ForeignFormat foreign_formats[] = {
-    {".dcm", "DICOM image", to_nifti},
-    {".mgz", "FreeSurfer image", to_nifti},
-    {".mgh", "FreeSurfer image", to_nifti},
-    {".vti", "VTK image", to_nifti},
-    {".tif", "TIFF image", to_nifti},
-    {".tiff", "TIFF image", to_nifti},
-    {".pvtu", "mesh in several files", to_vtu},
-    {".pvd", "list of VTK files", "name one of its .vtu files"},
-    {".inp", "Abaqus mesh", to_vtu},
-    {".med", "MED mesh", to_vtu},
-    {".xdmf", "XDMF mesh", to_vtu},
-    {".mesh", "Medit mesh", to_vtu},
-    {".stl", "surface", to_mesh},
-    {".ply", "surface", to_mesh},
-    {".obj", "surface", to_mesh},
-    {".vtp", "surface", to_mesh}};
+constexpr ForeignFormat foreign_formats[] = {{".dcm", "DICOM image", to_nifti},
+                                             {".mgz", "FreeSurfer image", to_nifti},
+                                             {".mgh", "FreeSurfer image", to_nifti},
+                                             {".vti", "VTK image", to_nifti},
+                                             {".tif", "TIFF image", to_nifti},
+                                             {".tiff", "TIFF image", to_nifti},
+                                             {".pvtu", "mesh in several files", to_vtu},
+                                             {".inp", "Abaqus mesh", to_vtu},
+                                             {".med", "MED mesh", to_vtu},
+                                             {".xdmf", "XDMF mesh", to_vtu},
+                                             {".mesh", "Medit mesh", to_vtu},
+                                             {".stl", "surface", to_mesh},
+                                             {".ply", "surface", to_mesh},
+                                             {".obj", "surface", to_mesh},
+                                             {".vtp", "surface", to_mesh}};
 
 /// Throws IoError for a file that is known not to be readable: of another format, or empty.
 void refuse_foreign(const std::string& path, const std::string& expected) {

@@ -9,13 +9,8 @@
 
 namespace tetwarp::cli {
 
-void Fingerprint::mix(std::uint64_t word) {
-  hash_ = (hash_ ^ word) * 0x100000001b3;
-  hash_ ^= hash_ >> 32;
-}
-
 void Fingerprint::add(std::span<const std::byte> bytes) {
-  mix(bytes.size());
+  hash_.add_bits(bytes.size());
   add_part(bytes);
   end();
 }
@@ -34,13 +29,13 @@ void Fingerprint::add_part(std::span<const std::byte> bytes) {
   for (; bytes.size() >= sizeof rest_; bytes = bytes.subspan(sizeof rest_)) {
     std::uint64_t word;
     std::memcpy(&word, bytes.data(), sizeof word);
-    mix(word);
+    hash_.add_bits(word);
   }
   take_rest();
 }
 
 void Fingerprint::end() {
-  mix(rest_);
+  hash_.add_bits(rest_);
   rest_ = 0;
   rest_bytes_ = 0;
 }
@@ -78,6 +73,7 @@ void Fingerprint::add(const WarpOptions& options) {
   add(options.intensity);
   add(options.quantities);
   add(options.outside);
+  add(options.falloff);
   add(options.background);
   add(*options.output_grid);
 }
@@ -93,12 +89,12 @@ void Fingerprint::begin(const ArrayHeader& array, const Grid& grid) {
   add(array.type);
   add(array.components);
   add(grid);
-  mix(static_cast<std::size_t>(grid.voxel_count()) * static_cast<std::size_t>(array.components) *
-      size_of(array.type));
+  hash_.add_bits(static_cast<std::size_t>(grid.voxel_count()) *
+                 static_cast<std::size_t>(array.components) * size_of(array.type));
 }
 
 std::string Fingerprint::text() const {
-  return fmt::format("{:016x}", hash_);
+  return fmt::format("{:016x}", hash_.value());
 }
 
 }  // namespace tetwarp::cli

@@ -12,13 +12,12 @@
 #include <tetwarp/io.hpp>
 #include <tetwarp/warp.hpp>
 
+#include "host/base/number_hash.hpp"
+
 namespace tetwarp::cli {
 
-/// FNV-1a with its 64-bit constants, over 64-bit words instead of bytes for speed, with a shift
-/// after each multiplication that mixes high bits into low ones. The size of an item is hashed
-/// before it, so that different sequences of items give different hashes. Not a cryptographic hash.
-///
-/// Equal on all little-endian machines.
+/// The size of an item is hashed before it, so that different sequences of items give different
+/// hashes. Equal on all little-endian machines.
 class Fingerprint {
  public:
   void add(std::span<const std::byte> bytes);
@@ -56,11 +55,9 @@ class Fingerprint {
   std::string text() const;
 
  private:
-  void mix(std::uint64_t word);
-
   std::uint64_t rest_ = 0;      ///< bytes of the parts so far that are not a whole word yet
   std::size_t rest_bytes_ = 0;  ///< fewer than eight
-  std::uint64_t hash_ = 0xcbf29ce484222325;
+  WordHash<32> hash_;
 };
 
 }  // namespace tetwarp::cli

@@ -134,6 +134,10 @@ std::string needs_all_at_once(const WarpArguments& arguments) {
   if (arguments.warp.filter == Filter::bspline) {
     return "bspline needs the whole source; use --filter cubic";
   }
+  if (extends(arguments.warp.outside)) {
+    return fmt::format("--outside {} needs the whole mesh; use identity",
+                       name_of(arguments.warp.outside));
+  }
   return {};
 }
 
@@ -149,7 +153,10 @@ bool plan_memory(VolumePlan& plan,
     source_bytes +=
         source_voxels * array.components * filter_bytes(arguments.warp.filter, array.type);
   }
-  const double samples = source_bytes + output_bytes;
+  // Owners of voxels, kept where voxels outside depend on them.
+  const bool keeps_owners =
+      extends(arguments.warp.outside) && !arguments.extra.contains(owner_output);
+  const double samples = source_bytes + output_bytes + (keeps_owners ? 4 * output_voxels : 0);
   const double resident = resident_memory();
   const double limit = arguments.memory > 0
                            ? std::min(arguments.memory, resident + available_memory())

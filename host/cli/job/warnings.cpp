@@ -206,4 +206,13 @@ void print_warnings(const Warnings& warnings, const std::string& job) {
   }
 }
 
+void print_merged(const std::string& path, const std::string& merged) {
+  if (!merged.empty()) print_warnings({path + ": " + merged}, "");
+}
+
+void print_left_out(const std::string& path, const std::vector<std::string>& left_out) {
+  if (left_out.empty()) return;
+  fmt::print(stderr, "tetwarp: {}: left out: {}\n", path, one_line(listed(left_out)));
+}
+
 }  // namespace tetwarp::cli

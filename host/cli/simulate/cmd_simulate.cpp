@@ -2,15 +2,18 @@
 /// The subcommand simulate.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <memory>
+#include <algorithm>
+#include <filesystem>
+#include <string>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
+#include <vector>
 
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/simulate/simulate_run.hpp"
+#include "io/files/text_file.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -27,10 +30,7 @@ int print_scene(const SimulateArguments& arguments) {
     return 0;
   }
   read_scene(arguments.scene_file);  // its errors
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
-      std::fopen(arguments.scene_file.c_str(), "rb"), std::fclose);
-  if (!file) throw IoError(arguments.scene_file, "", "cannot be opened");
-  for (int c = std::fgetc(file.get()); c != EOF; c = std::fgetc(file.get())) std::putchar(c);
+  fmt::print("{}", read_text(arguments.scene_file));
   return 0;
 }
 
@@ -44,8 +44,20 @@ void print_summary(const SimulateArguments& arguments,
              arguments.folder);
 }
 
+/// Throws IoError where a scene that ships with the command is given as a file.
+void check_scene_file(const std::string& file) {
+  const std::vector<std::string> names = scene_names();
+  if (std::filesystem::is_regular_file(file) ||
+      std::find(names.begin(), names.end(), file) == names.end()) {
+    return;
+  }
+  throw IoError(file, "",
+                "is no file; for the scene that ships with the command give --scene " + file);
+}
+
 int run_simulate(const SimulateArguments& arguments) {
   if (arguments.scene_name == "list") return list_scenes();
+  check_scene_file(arguments.scene_file);
   if (arguments.print) return print_scene(arguments);
   const InterruptFlag interrupts_set_a_flag;
   SimulateRun run(arguments);

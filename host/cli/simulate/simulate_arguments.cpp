@@ -69,7 +69,7 @@ void declare_pictures(CLI::App& app, SimulateArguments& arguments) {
   app.add_option_function<std::array<double, 6>>(
          "--camera",
          [&arguments](const std::array<double, 6>& camera) { arguments.camera = camera; },
-         "eye and target [whole scene at the start]")
+         "eye and target [those of the scene, or the whole scene at the start]")
       ->delimiter(',')
       ->type_name("X,Y,Z,TX,TY,TZ");
   app.add_option("--pixels", arguments.pixels, "width and height of the pictures [960,640]")

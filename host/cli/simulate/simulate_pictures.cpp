@@ -1,120 +1,24 @@
 /// @file simulate_pictures.cpp
-/// The camera, and what a picture shows.
+/// Pictures of outputs, and the film of them.
 #include "host/cli/simulate/simulate_pictures.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <tetwarp/io.hpp>
 
 #include "host/base/stopwatch.hpp"
-#include "host/cli/simulate/obstacle_surface.hpp"
+#include "host/view/scene_look.hpp"
 
 namespace tetwarp::cli {
-namespace {
-using Rgb = std::array<double, 3>;
-
-/// Colors of bodies, distinguishable with the common forms of color blindness: those of Okabe and
-/// Ito without black, ordered so that successive colors differ most.
-constexpr std::array<Rgb, 7> body_colors{{{0.90, 0.45, 0.20},
-                                          {0.16, 0.50, 0.76},
-                                          {0.25, 0.66, 0.45},
-                                          {0.93, 0.76, 0.25},
-                                          {0.76, 0.46, 0.65},
-                                          {0.42, 0.72, 0.90},
-                                          {0.75, 0.30, 0.24}}};
-constexpr Rgb obstacle_color{0.62, 0.63, 0.66};
-
-/// The color of a body; from the eighth on lighter and darker variants.
-Rgb color_of(std::size_t body) {
-  Rgb color = body_colors[body % body_colors.size()];
-  const std::size_t round = body / body_colors.size() % 3;
-  if (round == 0) return color;
-  for (double& part : color) part = round == 1 ? 0.5 + 0.5 * part : 0.65 * part;
-  return color;
-}
-
-struct Box {
-  Point3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-
-  void include(const Point3& point) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], point[axis]);
-      high[axis] = std::max(high[axis], point[axis]);
-    }
-  }
-  double size() const { return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]); }
-};
-
-/// Whether a body is likely to fall far: cloth, and bodies without fixed or driven parts.
-bool may_fall(const Body& body) {
-  if (body.kind == BodyKind::scripted) return false;
-  return body.kind == BodyKind::cloth || (body.fixed.empty() && body.driven.empty());
-}
-
-/// The corners of a box.
-std::array<Point3, 8> corners_of(const Box& box) {
-  std::array<Point3, 8> corners{};
-  for (std::size_t c = 0; c < 8; ++c) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      corners[c][axis] = (c >> axis & 1) != 0 ? box.high[axis] : box.low[axis];
-    }
-  }
-  return corners;
-}
-
-/// Adds the corners of a box after a free fall of a time, at most as far as the box is large.
-void add_fall(const Box& box, const Point3& gravity, double seconds, std::vector<Point3>& points) {
-  const double size = std::hypot(gravity[0], gravity[1], gravity[2]);
-  if (!(size > 0)) return;
-  const double way = std::min(0.5 * size * seconds * seconds, box.size()) / size;
-  for (Point3 corner : corners_of(box)) {
-    for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] += way * gravity[axis];
-    points.push_back(corner);
-  }
-}
-
-/// Adds the projections of a box's corners onto planes nearer than the size of the box.
-void add_feet(const Box& box, const std::vector<DrawnPlane>& planes, std::vector<Point3>& points) {
-  for (const DrawnPlane& plane : planes) {
-    const Point3& n = plane.normal;
-    const double squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    for (Point3 corner : corners_of(box)) {
-      double height = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        height += n[axis] * (corner[axis] - plane.point[axis]) / squared;
-      }
-      for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] -= height * n[axis];
-      if (std::abs(height) * std::sqrt(squared) < box.size()) points.push_back(corner);
-    }
-  }
-}
-}  // namespace
-
-/// What is drawn, with the points that the surfaces refer to.
-struct ScenePictures::Drawing {
-  std::vector<std::vector<Point3>> points;
-  std::vector<Surface> obstacles;
-  std::vector<DrawnSurface> surfaces;
-  std::vector<DrawnPlane> planes;
-};
 
 ScenePictures::ScenePictures(const Simulator& simulator, const SimulateArguments& arguments)
     : simulator_(simulator), arguments_(arguments) {
   options_.width = arguments.pixels[0];
   options_.height = arguments.pixels[1];
-  if (arguments.camera) {
-    const auto& c = *arguments.camera;
-    options_.camera.eye = {c[0], c[1], c[2]};
-    options_.camera.target = {c[3], c[4], c[5]};
-    const bool is_from_above = std::hypot(c[0] - c[3], c[1] - c[4]) < 1e-6 * std::abs(c[2] - c[5]);
-    if (is_from_above) options_.camera.up = {0, 1, 0};
-  } else {
-    options_.camera = default_camera();
-  }
+  const double aspect = static_cast<double>(options_.width) / options_.height;
+  options_.camera =
+      arguments.camera ? view::camera_at(*arguments.camera) : view::scene_camera(simulator, aspect);
   render_surfaces({}, {}, {options_.camera, 1, 1});  // throws on a camera that shows nothing
   if (!arguments.film.empty()) FilmWriter::check_available(arguments.film);
 }
@@ -123,48 +27,9 @@ void ScenePictures::begin() {
   if (!arguments_.film.empty()) film_.emplace(arguments_.film);
 }
 
-ScenePictures::Drawing ScenePictures::drawing() const {
-  Drawing drawing;
-  const Scene& scene = simulator_.scene();
-  for (const Obstacle& obstacle : scene.obstacles) {
-    if (auto plane = plane_of(obstacle, simulator_.time())) drawing.planes.push_back(*plane);
-    if (auto surface = surface_of(obstacle, simulator_.time())) {
-      drawing.obstacles.push_back(std::move(*surface));
-    }
-  }
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    drawing.points.push_back(simulator_.surface_positions(b));
-  }
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    drawing.surfaces.push_back(
-        {drawing.points[b], simulator_.body(b).surface.triangles, color_of(b)});
-  }
-  for (const Surface& surface : drawing.obstacles) {
-    drawing.surfaces.push_back({surface.points, surface.triangles, obstacle_color});
-  }
-  return drawing;
-}
-
-Camera ScenePictures::default_camera() const {
-  const Drawing drawn = drawing();
-  std::vector<Point3> points;
-  Box box;
-  for (const DrawnSurface& surface : drawn.surfaces) {
-    points.insert(points.end(), surface.points.begin(), surface.points.end());
-  }
-  for (const Point3& point : points) box.include(point);
-  if (!points.empty()) {
-    const Scene& scene = simulator_.scene();
-    const bool falls = std::ranges::any_of(scene.bodies, may_fall) && drawn.planes.empty();
-    if (falls) add_fall(box, scene.gravity, scene.duration, points);
-    add_feet(box, drawn.planes, points);
-  }
-  return camera_of(points, static_cast<double>(options_.width) / options_.height);
-}
-
 void ScenePictures::draw_frame(std::int64_t frame, double seconds) {
   const Stopwatch watch;
-  const Drawing drawn = drawing();
+  const view::SceneDrawing drawn = view::drawing_of(simulator_);
   const Image image = render_surfaces(drawn.surfaces, drawn.planes, options_);
   if (arguments_.draws) {
     const std::filesystem::path path =

@@ -38,11 +38,6 @@ class ScenePictures {
   double seconds() const { return seconds_; }
 
  private:
-  struct Drawing;
-
-  Drawing drawing() const;
-  Camera default_camera() const;
-
   const Simulator& simulator_;
   const SimulateArguments& arguments_;
   SurfaceRenderOptions options_;

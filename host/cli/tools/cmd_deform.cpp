@@ -20,6 +20,7 @@
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/job/warnings.hpp"
 #include "host/cli/tools/displacement.hpp"
+#include "host/cli/tools/mesh_options.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -42,13 +43,10 @@ int run_deform(const DeformArguments& arguments) {
   options.import.axes = axes_of_mesh(arguments.input, arguments.axes);
   const MeshReader reader(arguments.input, options);
   write_deformed_mesh(arguments.output, reader.mesh(), arguments.deform, arguments.steps);
-  const std::string& merged = reader.header().merged;
-  if (!merged.empty()) print_warnings({arguments.input + ": " + merged}, "");
+  print_merged(arguments.input, reader.header().merged);
   std::vector<std::string> left_out = reader.header().not_read;
   if (reader.header().has_displacement) left_out.insert(left_out.begin(), "its own displacement");
-  if (!left_out.empty()) {
-    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input, one_line(listed(left_out)));
-  }
+  print_left_out(arguments.input, left_out);
   if (arguments.quiet) return 0;
   fmt::print("{} nodes, {} cells, {} steps of {}: {}\n", reader.header().node_count,
              reader.mesh().cell_count(), arguments.steps, name_of(arguments.deform.kind),
@@ -65,12 +63,7 @@ void add_deform_command(CLI::App& app, Run& run) {
       "MESH -o MESH [options]",
       "  tetwarp deform mesh.vtkhdf -o moving.vtkhdf --kind twist --steps 8\n"
       "  tetwarp deform skull.msh -o moving.vtkhdf --kind bend --steps 1\n");
-  command->add_option("MESH", arguments->input, "mesh: VTKHDF, .msh, .vtu or .vtk")
-      ->required()
-      ->type_name("");
-  command->add_option("-o,--output", arguments->output, "mesh to write, with array displacement")
-      ->required()
-      ->type_name("MESH");
+  add_mesh_to_mesh(*command, arguments->input, arguments->output);
   add_choice(*command, "--kind", deform.kind, choices_of<Deformation>(),
              "kind of deformation [twist]");
   command
@@ -89,8 +82,7 @@ void add_deform_command(CLI::App& app, Run& run) {
   command->add_option("--offset", deform.offset, "offset of translate, in world units [0,0,0]")
       ->delimiter(',')
       ->type_name("X,Y,Z");
-  add_axes(*command, arguments->axes,
-           "axes of a mesh in .msh, .vtu or .vtk; lps is turned to ras [as they are]");
+  add_mesh_axes(*command, arguments->axes);
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] {
     if (!std::isfinite(arguments->deform.amount)) {

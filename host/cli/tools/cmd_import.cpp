@@ -63,10 +63,7 @@ void run_volume_import(const ImportArguments& arguments) {
     writer.write(0, {{0, 0, 0}, grid.dims}, volume.data.data());
   }
   writer.finish();
-  if (!header.left_out.empty()) {
-    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input,
-               one_line(listed(header.left_out)));
-  }
+  print_left_out(arguments.input, header.left_out);
   if (arguments.quiet) return;
   fmt::print("{} x {} x {} voxels of {}{}{}: {}\n", grid.dims[0], grid.dims[1], grid.dims[2],
              name_of(array.type), components_text(array, arguments),
@@ -78,11 +75,8 @@ void run_mesh_import(const ImportArguments& arguments) {
   options.axes = arguments.axes.value_or(Axes::ras);
   const ImportedMesh mesh = import_mesh(arguments.input, options);
   write_mesh(arguments.output, mesh.mesh, mesh.displacements, mesh.times, mesh.arrays);
-  if (!mesh.merged.empty()) print_warnings({arguments.input + ": " + mesh.merged}, "");
-  if (!mesh.left_out.empty()) {
-    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input,
-               one_line(listed(mesh.left_out)));
-  }
+  print_merged(arguments.input, mesh.merged);
+  print_left_out(arguments.input, mesh.left_out);
   if (arguments.quiet) return;
   std::string skipped;
   for (const auto& [kind, count] : mesh.skipped) {
@@ -113,11 +107,13 @@ void add_import_command(CLI::App& app, Run& run) {
       "  tetwarp import brain.nii.gz -o brain.vtkhdf\n"
       "  tetwarp import skull.msh -o skull.vtkhdf --displacement u\n");
   command
-      ->add_option("FILE", arguments->input,
-                   "image, .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd; or mesh of tetrahedra "
-                   "and hexahedra: "
-                   "Gmsh's .msh 2 and 4, "
-                   "VTK's .vtu and .vtk")
+      ->add_option(
+          "FILE", arguments->input,
+          "image, .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd; or mesh of tetrahedra "
+          "and hexahedra: "
+          "Gmsh's .msh 2 and 4, "
+          "VTK's .vtu, .vtk, .vtm, .pvd and .series, Exodus' .e and .exo; '*' in a name for "
+          "numbered files")
       ->required()
       ->type_name("");
   command->add_option("-o,--output", arguments->output, "volume or mesh to write")

@@ -19,6 +19,7 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/job/warnings.hpp"
+#include "host/cli/tools/mesh_options.hpp"
 #include "host/warp/hex_split.hpp"
 
 namespace tetwarp::cli {
@@ -90,9 +91,7 @@ int run_invert(const InvertArguments& arguments) {
   MeshReadOptions options = arguments.mesh;
   options.import.axes = axes_of_mesh(arguments.input, arguments.axes);
   const MeshReader reader(arguments.input, options);
-  if (!reader.header().merged.empty()) {
-    print_warnings({arguments.input + ": " + reader.header().merged}, "");
-  }
+  print_merged(arguments.input, reader.header().merged);
   const auto count = std::ssize(reader.header().times);
   const std::int64_t step = arguments.step.value_or(count - 1);
   if (step >= count || (count > 1 && !arguments.step)) {
@@ -127,12 +126,7 @@ void add_invert_command(CLI::App& app, Run& run) {
       "MESH -o MESH [options]",
       "  tetwarp invert moving.vtkhdf -o back.vtkhdf --step 7\n"
       "  tetwarp warp warped.nii.gz back.vtkhdf -o restored.nii.gz\n");
-  command->add_option("MESH", arguments->input, "mesh: VTKHDF, .msh, .vtu or .vtk")
-      ->required()
-      ->type_name("");
-  command->add_option("-o,--output", arguments->output, "mesh to write, with array displacement")
-      ->required()
-      ->type_name("MESH");
+  add_mesh_to_mesh(*command, arguments->input, arguments->output);
   command->add_option("--step", arguments->step, "step to invert [the only one]")
       ->check(at_least(0))
       ->type_name("N");
@@ -149,8 +143,7 @@ void add_invert_command(CLI::App& app, Run& run) {
                    "step that holds the rest positions of moving points [0]")
       ->check(at_least(0))
       ->type_name("N");
-  add_axes(*command, arguments->axes,
-           "axes of a mesh in .msh, .vtu or .vtk; lps is turned to ras [as they are]");
+  add_mesh_axes(*command, arguments->axes);
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_invert(*arguments); }; });
 }

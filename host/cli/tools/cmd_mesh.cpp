@@ -70,11 +70,8 @@ int run_mesh_of_surface(const MeshArguments& arguments) {
   std::vector<std::string> left_out;
   std::string merged;
   const Surface surface = read_surface(arguments.from_surface, &left_out, &merged);
-  if (!merged.empty()) print_warnings({arguments.from_surface + ": " + merged}, "");
-  if (!left_out.empty()) {
-    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.from_surface,
-               one_line(listed(left_out)));
-  }
+  print_merged(arguments.from_surface, merged);
+  print_left_out(arguments.from_surface, left_out);
   Mesh mesh;
   try {
     mesh = make_lattice_mesh(surface, arguments.lattice.cells);

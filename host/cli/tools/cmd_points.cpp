@@ -106,9 +106,7 @@ int run_points(const PointsArguments& arguments) {
   MeshReadOptions read = arguments.mesh;
   if (kind_of(arguments.mesh_file) != FileKind::mesh) read.import.axes = axes;
   const MeshReader mesh(arguments.mesh_file, read);
-  if (!mesh.header().merged.empty()) {
-    print_warnings({arguments.mesh_file + ": " + mesh.header().merged}, "");
-  }
+  print_merged(arguments.mesh_file, mesh.header().merged);
   const std::vector<std::int64_t> steps = selected_steps(arguments, mesh);
   const std::vector<std::string> names = output_names(arguments, steps);
   std::vector<std::string> inputs = {arguments.input, arguments.mesh_file};

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
 #include "host/cli/common/declare.hpp"
+#include "io/files/text_file.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -152,9 +152,7 @@ std::string position_text(const std::string& text, std::size_t offset) {
 }
 
 Json read_json(const std::string& path) {
-  std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) throw IoError(path, "", "cannot be read; check the name of the batch file");
+  const std::string text = read_text(path);
   try {
     return Json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {

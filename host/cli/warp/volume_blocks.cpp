@@ -50,25 +50,28 @@ BlockLimits VolumeBlocks::limits() const {
   return limits;
 }
 
-BlockPlan VolumeBlocks::plan(const std::vector<Point3>& positions) {
+BlockPlan VolumeBlocks::plan(const std::vector<Point3>& positions,
+                             const std::function<void()>& before_reading) {
   if (task_.is_whole) {
     WarpBlock whole;
     whole.output = task_.region;
     return {{whole}};
   }
-  last_limits_ = limits();
-  return planner_->plan(positions, last_limits_);
+  const BlockLimits allowed = limits();
+  try {
+    return planner_->plan(positions, allowed);
+  } catch (const std::invalid_argument&) {
+    if (least_block_memory(*planner_, positions, allowed) <= allowed.host) throw;
+    before_reading();
+    refuse(allowed);
+  }
 }
 
-bool VolumeBlocks::is_too_low(const std::vector<Point3>& positions) {
-  return planner_ && least_block_memory(*planner_, positions, last_limits_) > last_limits_.host;
-}
-
-void VolumeBlocks::refuse_limit() {
+void VolumeBlocks::refuse(const BlockLimits& limits) {
   double least = 0;
   for (const std::int64_t step : task_.job.steps) {
     const std::vector<Point3> positions = task_.job.mesh.read_step(step);
-    least = std::max(least, least_block_memory(*planner_, positions, last_limits_));
+    least = std::max(least, least_block_memory(*planner_, positions, limits));
   }
   throw std::invalid_argument(fmt::format(
       "{}: --memory is too low: the program takes {}, a block and its source {} more; give at "

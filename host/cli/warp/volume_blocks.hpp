@@ -1,6 +1,7 @@
 /// @file volume_blocks.hpp
 /// The blocks in which the steps of a volume are computed.
 #pragma once
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -17,15 +18,11 @@ class VolumeBlocks {
   /// @param task, ranks  kept by the caller; all ranks plan the same blocks
   VolumeBlocks(const VolumeTask& task, const Ranks& ranks);
 
-  /// @throws std::invalid_argument  positions that are not finite or too far from the grid, or
-  ///                                memory that is too low, see is_too_low()
-  BlockPlan plan(const std::vector<Point3>& positions);
-
-  /// Whether --memory was too low for the smallest blocks of these positions in the last plan().
-  bool is_too_low(const std::vector<Point3>& positions);
-  /// Throws std::invalid_argument with the least limit that suffices for all steps. Reads the file
-  /// of the mesh.
-  [[noreturn]] void refuse_limit();
+  /// @param before_reading  called before the file of the mesh is read, which is done where memory
+  ///                        is too low
+  /// @throws std::invalid_argument  positions that are not finite or too far from the grid; memory
+  ///                                that is too low, with the least limit for all steps
+  BlockPlan plan(const std::vector<Point3>& positions, const std::function<void()>& before_reading);
 
   /// Memory of the process besides that of the blocks [byte]; 0 for a whole volume.
   double fixed_bytes() const { return fixed_bytes_; }
@@ -37,12 +34,12 @@ class VolumeBlocks {
 
  private:
   BlockLimits limits() const;
+  [[noreturn]] void refuse(const BlockLimits& limits);
 
   const VolumeTask& task_;
   const Ranks& ranks_;
   double fixed_bytes_ = 0;
   std::optional<BlockPlanner> planner_;
-  BlockLimits last_limits_;  ///< of the last plan()
 };
 
 }  // namespace tetwarp::cli

@@ -48,7 +48,7 @@ void VolumeRun::plan_only() {
       result_.plans.push_back(step);
       continue;
     }
-    const BlockPlan plan = blocks_.plan(task_.job.mesh.read_step(planned.mesh_step));
+    const BlockPlan plan = blocks_.plan(task_.job.mesh.read_step(planned.mesh_step), [] {});
     step.blocks = std::ssize(plan.blocks);
     step.disk = temporary_disk(volume, task_.arguments, step.blocks);
     for (const WarpBlock& block : plan.blocks) {

@@ -69,13 +69,8 @@ void VolumeSteps::repeat_last(const std::shared_ptr<VolumeStep>& step) {
 }
 
 BlockPlan VolumeSteps::plan(const std::vector<Point3>& positions) {
-  try {
-    return blocks_.plan(positions);
-  } catch (const std::invalid_argument&) {
-    if (!blocks_.is_too_low(positions)) throw;
-    queue_.finish_writing();  // HDF5 may be used by one thread at a time
-    blocks_.refuse_limit();
-  }
+  // HDF5 may be used by one thread at a time.
+  return blocks_.plan(positions, [this] { queue_.finish_writing(); });
 }
 
 void VolumeSteps::run_blocks(const std::shared_ptr<VolumeStep>& step) {

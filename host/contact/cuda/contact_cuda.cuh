@@ -133,26 +133,26 @@ class CudaContactDevice final : public ContactDevice {
     return labels();
   }
 
-  void evolve(const ContactAdhesionOp& body) override {
+  void evolve(const ContactAdhesionOp& op) override {
     const DeviceScope scope(exec_.number());
-    ContactAdhesionOp on_device = body;
-    on_device.in = adhesion_on_device(exec_, body.in, input_in_memory_);
-    next_intensity_.resize(body.next_intensity.size);
-    next_gap_.resize(body.next_gap.size);
-    debonded_.resize(body.debonded.size);
+    ContactAdhesionOp on_device = op;
+    on_device.in = adhesion_on_device(exec_, op.in, input_in_memory_);
+    next_intensity_.resize(op.next_intensity.size);
+    next_gap_.resize(op.next_gap.size);
+    debonded_.resize(op.debonded.size);
     on_device.next_intensity = view_of(next_intensity_);
     on_device.next_gap = view_of(next_gap_);
     on_device.debonded = view_of(debonded_);
     contact_adhesion(exec_, on_device);
-    exec_.get(view_of(std::as_const(next_intensity_)), body.next_intensity.data);
-    exec_.get(view_of(std::as_const(next_gap_)), body.next_gap.data);
-    exec_.get(view_of(std::as_const(debonded_)), body.debonded.data);
+    exec_.get(view_of(std::as_const(next_intensity_)), op.next_intensity.data);
+    exec_.get(view_of(std::as_const(next_gap_)), op.next_gap.data);
+    exec_.get(view_of(std::as_const(debonded_)), op.debonded.data);
   }
 
-  void evolve_resident(const ContactAdhesionOp& body, void* stream) override {
+  void evolve_resident(const ContactAdhesionOp& op, void* stream) override {
     const DeviceScope scope(exec_.number());
     const CallersStream callers(exec_, stream);
-    contact_adhesion(exec_, body);
+    contact_adhesion(exec_, op);
   }
 
   std::string name() const override { return name_; }

@@ -78,9 +78,9 @@ class ContactDevice : public StructureStages {
 
   /// Runs the stage "adhesion".
   /// @param body  input and output, views of host memory
-  virtual void evolve(const ContactAdhesionOp& body) = 0;
+  virtual void evolve(const ContactAdhesionOp& op) = 0;
   /// The same in memory of the device, on the caller's stream or, with null, after the default one.
-  virtual void evolve_resident(const ContactAdhesionOp& body, void* stream) = 0;
+  virtual void evolve_resident(const ContactAdhesionOp& op, void* stream) = 0;
 
   virtual std::string name() const = 0;
 

@@ -16,6 +16,7 @@
 #include "host/base/pixel_dispatch.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/reference/warp/fields.hpp"
+#include "host/reference/warp/nearest_surface.hpp"
 #include "host/reference/warp/overlap.hpp"
 #include "host/reference/warp/ownership.hpp"
 #include "host/reference/warp/sample.hpp"
@@ -45,6 +46,7 @@ class ReferenceBackend : public WarpBackend {
     const double* const deformed = positions_[flight].data();
     owners_.claim_all(rest, deformed, report.counts, progress);
     make_rules(rest, deformed, report.counts);
+    if (extends(plan_.options.outside)) find_extension(rest, deformed);
     for (std::size_t s = 0; s < plan_.sources.size(); ++s) {
       with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
         T* const out = static_cast<T*>(target.volumes[s]);
@@ -87,6 +89,15 @@ class ReferenceBackend : public WarpBackend {
                                     owners_.source, owners_.output, plan_.options);
       counts.tets_averaged += transforms_[t].averages();
     }
+  }
+
+  /// Displacements of the voxels that no tetrahedron covers.
+  void find_extension(const double* rest, const double* deformed) {
+    const NearestSurface surface(plan_, owners_, rest, deformed);
+    extension_.assign(owners_.owner.size(), Eigen::Vector3d::Zero());
+    for_each_voxel([&](std::size_t v, const Eigen::Vector3d& index) {
+      if (owners_.owner[v] < 0) extension_[v] = surface.displacement(index);
+    });
   }
 
   /// Totals of source s and its output; with conservative intensity also the output itself.
@@ -139,6 +150,9 @@ class ReferenceBackend : public WarpBackend {
             store_voxel(s, sampler, owners_.source_position[v], transform, voxel);
           } else if (plan_.options.outside == Outside::identity) {
             store_voxel(s, sampler, same_place(i, j, k), outside_transform(), voxel);
+          } else if (extends(plan_.options.outside)) {
+            const Eigen::Vector3d step = owners_.source.from_world * extension_[v];
+            sampler.store(same_place(i, j, k) + step, voxel);
           } else {
             std::fill_n(voxel, sampler.components(), sampler.background());
           }
@@ -216,8 +230,19 @@ class ReferenceBackend : public WarpBackend {
     });
   }
 
+  /// The same outside of the mesh.
+  void write_extension(float* displacement) const {
+    for_each_voxel([&](std::size_t v, const Eigen::Vector3d&) {
+      const Eigen::Vector3d& u = extension_[v];
+      if (owners_.owner[v] < 0) store({u(0), u(1), u(2)}, v, displacement);
+    });
+  }
+
   void write_fields(const double* rest, const double* deformed, const FieldTarget& fields) const {
-    if (fields.displacement != nullptr) write_displacement(fields.displacement);
+    if (fields.displacement != nullptr) {
+      write_displacement(fields.displacement);
+      if (extends(plan_.options.outside)) write_extension(fields.displacement);
+    }
     if (fields.jacobian == nullptr && fields.gradient == nullptr && fields.strain == nullptr)
       return;
     for_each_voxel([&](std::size_t v, const Eigen::Vector3d& index) {
@@ -251,6 +276,7 @@ class ReferenceBackend : public WarpBackend {
   StepReport reports_[2];
   Ownership owners_;
   std::vector<SampleTransform> transforms_;  ///< of every tetrahedron
+  std::vector<Eigen::Vector3d> extension_;   ///< of every voxel; zero where it is covered [world]
 };
 }  // namespace
 

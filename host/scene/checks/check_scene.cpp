@@ -2,10 +2,12 @@
 /// Checks of a scene as a whole: times, names, and what refers to bodies.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 #include <variant>
 
+#include "host/base/point3.hpp"
 #include "host/scene/checks/check_body.hpp"
 #include "host/scene/checks/check_geometry.hpp"
 #include "host/scene/checks/check_motion.hpp"
@@ -187,6 +189,20 @@ void check_output(const SceneOutput& output) {
     if (!seen.insert(field).second) fail_at(place, "is listed twice, remove one");
   }
 }
+
+void check_camera(const Camera& camera) {
+  check_finite("camera.eye", camera.eye);
+  check_finite("camera.target", camera.target);
+  check_finite("camera.up", camera.up);
+  const Point3 line = minus(camera.target, camera.eye);
+  if (!(norm(line) > 0)) fail_at("camera.target", "is the place of the eye");
+  if (!(norm(cross(line, camera.up)) > 1e-9 * norm(line) * norm(camera.up))) {
+    fail_at("camera.up", "is along the line of sight, which leaves open what is upwards");
+  }
+  if (!(camera.angle > 0 && camera.angle < std::numbers::pi)) {
+    fail_at("camera.angle", "expected an angle of view above 0 and below pi");
+  }
+}
 }  // namespace
 
 std::int64_t Scene::step_count() const {
@@ -217,6 +233,7 @@ void check_scene(const Scene& scene) {
   check_pairs(scene.contact, names);
   check_solver(scene.solver);
   check_output(scene.output);
+  if (scene.camera) check_camera(*scene.camera);
 }
 
 }  // namespace tetwarp

@@ -112,6 +112,20 @@ SpringList coupling_springs(const Scene& scene,
 
 }  // namespace
 
+void add_handle_springs(const Handle& handle,
+                        std::int32_t index,
+                        const std::vector<ModelPoint>& points,
+                        const std::vector<double>& shares,
+                        Model& model) {
+  SpringList list{points, {}, shares};
+  for (const ModelPoint& point : points) {
+    ModelPoint anchor;
+    anchor.local = position_of(point, model.start, model.node_count);
+    list.b.push_back(anchor);
+  }
+  add_list(list, handle.stiffness, handle.damping, -1, index, model.springs);
+}
+
 void add_springs(const Scene& scene, const SceneGeometry& geometry, Model& model) {
   MaterialFinder finder(scene, geometry, model);
   for (std::size_t c = 0; c < scene.couplings.size(); ++c) {
@@ -124,16 +138,12 @@ void add_springs(const Scene& scene, const SceneGeometry& geometry, Model& model
     const std::int32_t body =
         body_named(scene, handle.body, "handles[" + std::to_string(h) + "].handle");
     const auto& nodes = geometry.handle_nodes[h];
-    SpringList list;
-    list.share = shares_of(geometry.bodies[static_cast<std::size_t>(body)], nodes);
+    std::vector<ModelPoint> points;
     for (const std::int32_t node : nodes) {
-      list.a.push_back(selected_point(model, geometry, body, node));
-      ModelPoint anchor;
-      anchor.local = position_of(list.a.back(), model.start, model.node_count);
-      list.b.push_back(anchor);
+      points.push_back(selected_point(model, geometry, body, node));
     }
-    add_list(list, handle.stiffness, handle.damping, -1, static_cast<std::int32_t>(h),
-             model.springs);
+    add_handle_springs(handle, static_cast<std::int32_t>(h), points,
+                       shares_of(geometry.bodies[static_cast<std::size_t>(body)], nodes), model);
   }
 }
 

@@ -10,14 +10,13 @@
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 #include "host/simulate/run/checkpoint_bytes.hpp"
-#include "host/simulate/run/fingerprint.hpp"
 #include "host/simulate/step/scene_record.hpp"
 
 namespace tetwarp {
 namespace {
 
 constexpr std::uint64_t checkpoint_kind = 0x7477'7363'0000'0000;  // "twsc", then the version
-constexpr std::uint64_t checkpoint_version = checkpoint_kind + 6;
+constexpr std::uint64_t checkpoint_version = checkpoint_kind + 7;
 
 bool has_checksum(std::span<const std::byte> bytes) {
   std::uint64_t checksum = 0;
@@ -75,11 +74,12 @@ void check_points(const std::vector<ContactPoint>& points, const SimulatedScene&
   }
 }
 
+/// @param of_scene  its fingerprint
 void check_head(std::span<const std::byte> bytes,
-                const SimulatedScene& scene,
+                std::uint64_t of_scene,
                 CheckpointReader& reader) {
   std::uint64_t version = 0, fingerprint = 0;
-  reader.read(version);
+  reader(version);
   if (version != checkpoint_version) {
     throw std::invalid_argument(
         version >> 32 == checkpoint_kind >> 32
@@ -91,16 +91,39 @@ void check_head(std::span<const std::byte> bytes,
     throw std::invalid_argument(
         "checkpoint: damaged or incomplete, its checksum is another; use an earlier one");
   }
-  reader.read(fingerprint);
-  if (fingerprint != fingerprint_of(scene)) {
+  reader(fingerprint);
+  if (fingerprint != of_scene) {
     throw std::invalid_argument(
         "checkpoint: it belongs to another scene; restart the scene that wrote it, unchanged");
   }
 }
 
+template <class Stream, class List>
+void pass_added(Stream& stream, List& added) {
+  stream.pass_list(added, [](auto& of, auto& handle) {
+    auto& [name, body, stiffness, damping, nodes, local, anchors] = handle;
+    of(name, body, stiffness, damping, local);
+    of.pass_list(nodes, [](auto& items, auto& node) { items(node); });
+    of.pass_list(anchors, [](auto& items, auto& anchor) { items(anchor); });
+  });
+}
+
+/// Reads the added handles and gives the lists of `now` their lengths.
+void read_added(CheckpointReader& reader, const SimulatedScene& scene, SimulationState& now) {
+  pass_added(reader, now.added);
+  for (const AddedHandle& handle : now.added) {
+    if (is_of_scene(scene, handle)) continue;
+    throw std::invalid_argument(
+        "checkpoint: damaged, or of another back end: an added handle does not fit the scene");
+  }
+  const std::size_t handles = scene.scene.handles.size() - scene.added.size() + now.added.size();
+  now.memory.drive.handles.resize(handles);
+  now.overrides.handles.resize(handles);
+}
+
 void check_end(CheckpointReader& reader, const SimulationState& state) {
   std::uint64_t checksum = 0;
-  reader.read(checksum);
+  reader(checksum);
   if (!reader.is_at_end() || state.steps < 0) {
     throw std::invalid_argument("checkpoint: damaged, it is longer than the state of its scene");
   }
@@ -118,20 +141,23 @@ void check_numbers(const SimulationState& state) {
 
 }  // namespace
 
-std::vector<std::byte> write_checkpoint(const SimulatedScene& scene, const SimulationState& state) {
+std::vector<std::byte> write_checkpoint(std::uint64_t fingerprint, const SimulationState& state) {
   CheckpointWriter writer;
-  writer.add(checkpoint_version);
-  writer.add(fingerprint_of(scene));
+  writer(checkpoint_version);
+  writer(fingerprint);
+  pass_added(writer, state.added);
   write_state(state, writer);
-  writer.add(checksum_of(writer.bytes()));
+  writer(checksum_of(writer.bytes()));
   return writer.take();
 }
 
 SimulationState read_checkpoint(std::span<const std::byte> checkpoint,
+                                std::uint64_t fingerprint,
                                 const SimulatedScene& scene,
                                 SimulationState now) {
   CheckpointReader reader(checkpoint);
-  check_head(checkpoint, scene, reader);
+  check_head(checkpoint, fingerprint, reader);
+  read_added(reader, scene, now);
   now.last.outcome = {};
   now.last.contact = {};
   read_state(reader, now);

@@ -1,35 +1,45 @@
 /// @file checkpoint_bytes.cpp
-/// Appends and reads numbers and lists as bytes.
+/// Appends bytes, and reads them with checks.
 #include "host/simulate/run/checkpoint_bytes.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <stdexcept>
 
 #include "host/base/number_hash.hpp"
 
 namespace tetwarp {
 
-void CheckpointWriter::append(const void* data, std::size_t size) {
-  if (size == 0) return;
+void CheckpointWriter::write_bytes(const void* data, std::size_t size) {
   const std::size_t end = bytes_.size();
   bytes_.resize(end + size);
   std::memcpy(bytes_.data() + end, data, size);
 }
 
-void CheckpointReader::read(bool& value) {
-  std::uint8_t byte = 0;
-  read(byte);
-  if (byte > 1) throw std::invalid_argument("checkpoint: damaged, a flag is neither 0 nor 1");
-  value = byte != 0;
+void CheckpointReader::read_bytes(void* data, std::size_t size) {
+  if (size > bytes_.size()) {
+    fail("incomplete, " + std::to_string(size) + " more bytes expected, got " +
+         std::to_string(bytes_.size()));
+  }
+  std::memcpy(data, bytes_.data(), size);
+  bytes_ = bytes_.subspan(size);
 }
 
-const std::byte* CheckpointReader::take(std::size_t count) {
-  if (count > bytes_.size()) {
-    throw std::invalid_argument("checkpoint: incomplete, " + std::to_string(count) +
-                                " more bytes expected, got " + std::to_string(bytes_.size()));
+void CheckpointReader::check_count(std::uint64_t count, std::size_t) const {
+  if (count > bytes_.size()) {  // an item has a byte at least
+    fail("incomplete, a list of " + std::to_string(count) + " entries expected");
   }
-  const std::byte* begin = bytes_.data();
-  bytes_ = bytes_.subspan(count);
-  return begin;
+}
+
+void CheckpointReader::check_length(std::uint64_t count, std::size_t now) const {
+  if (count != now) {
+    fail("a list has " + std::to_string(count) + " entries, the scene needs " +
+         std::to_string(now));
+  }
+}
+
+void CheckpointReader::fail(const std::string& problem) const {
+  throw std::invalid_argument("checkpoint: " + problem);
 }
 
 std::uint64_t checksum_of(std::span<const std::byte> bytes) {

@@ -15,14 +15,17 @@
 
 namespace tetwarp {
 
-MovingBodies::MovingBodies(SimulatedScene& scene, StepCount& count, StepClock& clock)
+MovingBodies::MovingBodies(SimulatedScene& scene,
+                           StepCount& count,
+                           StepClock& clock,
+                           std::optional<RestGrowth> growth)
     : scene_(scene),
       count_(count),
       clock_(clock),
       drive_(scene.scene, scene.geometry, scene.model),
       rest_factors_(std::make_shared<RestFactors>(scene.model)),
       contact_(make_contact()),
-      growth_(bring_apart(scene)),
+      growth_(growth ? std::move(*growth) : bring_apart(scene)),
       stepper_(make_stepper()),
       resident_(watch()),
       state_(scene.model, *stepper_, resident_),

@@ -2,6 +2,7 @@
 /// MovingBodies: the bodies of a scene and what moves them, one part of a step at a time.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "host/simulate/contact_step/contact_step.hpp"
@@ -30,7 +31,15 @@ class MovingBodies {
   /// @param scene  kept by the caller; bodies that start too near each other change the start of
   ///               its model
   /// @param count, clock  kept by the caller
-  MovingBodies(SimulatedScene& scene, StepCount& count, StepClock& clock);
+  /// @param growth  of a simulation that has started, whose handles have changed; nothing: it
+  ///                starts
+  MovingBodies(SimulatedScene& scene,
+               StepCount& count,
+               StepClock& clock,
+               std::optional<RestGrowth> growth = {});
+
+  /// Of bodies that started smaller.
+  const RestGrowth& growth() const { return growth_; }
 
   /// Keeps the state, for go_back().
   void begin_step();

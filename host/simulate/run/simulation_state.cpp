@@ -97,7 +97,7 @@ void pass_contacts(Stream& stream, Memory& contacts) {
 
 template <class Stream, class State>
 void pass_state(Stream& stream, State& state) {
-  auto& [steps, division, last, bodies, memory, overrides] = state;
+  auto& [steps, division, last, bodies, memory, overrides, added] = state;
   auto& [held_steps, undivided_steps] = division;
   auto& [outcome, contact, sums, substeps, is_out_of_time, points, work] = last;
   auto& [drive, contacts, sleep] = memory;

@@ -2,9 +2,11 @@
 /// SimulationState: what a simulation goes on from, as a value.
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "host/simulate/contact_step/contact_memory.hpp"
 #include "host/simulate/model/model.hpp"
+#include "host/simulate/run/added_handles.hpp"
 #include "host/simulate/run/checkpoint_bytes.hpp"
 #include "host/simulate/run/island_sleep.hpp"
 #include "host/simulate/run/last_step.hpp"
@@ -30,10 +32,13 @@ struct SimulationState {
   ModelState bodies;
   BodyMemory memory;
   DriveOverrides overrides;
+  std::vector<AddedHandle> added = {};  ///< as SimulatedScene::added
 };
 
+/// Writes all but the added handles.
 void write_state(const SimulationState& state, CheckpointWriter& writer);
-/// @param state  in: of the same scene, for the lengths of lists; members that a checkpoint does
+/// @param state  in: of the same scene and handles, for the lengths of lists; members that a
+/// checkpoint does
 ///               not hold stay; out: as written
 /// @throws std::invalid_argument  the bytes are damaged
 void read_state(CheckpointReader& reader, SimulationState& state);

@@ -151,13 +151,13 @@ void cell_cull(CpuExec& exec,
                      });
 }
 
-void cell_ranges(CpuExec& exec, const CellRangeOp& body) {
-  const std::int64_t all_cells[2] = {0, body.ranges.size};
-  exec.for_each_span("warp/cull", {all_cells, 2}, body.ranges.size,
+void cell_ranges(CpuExec& exec, const CellRangeOp& op) {
+  const std::int64_t all_cells[2] = {0, op.ranges.size};
+  exec.for_each_span("warp/cull", {all_cells, 2}, op.ranges.size,
                      [&](std::int64_t, std::int64_t first, std::int64_t past, std::int64_t) {
-                       std::int64_t pair = lower_bound_of_cell(body.pairs, body.count(), first);
+                       std::int64_t pair = lower_bound_of_cell(op.pairs, op.count(), first);
                        for (std::int64_t cell = first; cell < past; ++cell)
-                         pair = body.set_range(cell, pair);
+                         pair = op.set_range(cell, pair);
                      });
 }
 

@@ -34,6 +34,6 @@ void cell_cull(CpuExec& exec,
                View<CellPair> pairs);
 
 /// Computes the range of pairs of every cell: one binary search per stretch of cells.
-void cell_ranges(CpuExec& exec, const CellRangeOp& body);
+void cell_ranges(CpuExec& exec, const CellRangeOp& op);
 
 }  // namespace tetwarp

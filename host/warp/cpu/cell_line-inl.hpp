@@ -72,7 +72,9 @@ class CellLine {
         }
         write_flat(first, j, k, row);
         owners_.write_covered(j, k, row);
-        if (count > 0) sampler_.write(owners_.sources(), owners_.runs(j, k), count, j, k);
+        if (count > 0) {
+          sampler_.write(owners_.sources(), owners_.hexes(), owners_.runs(j, k), count, j, k);
+        }
         stream_.end_row(std::ptrdiff_t{end - begin} * voxel_bytes_);
       }
     }

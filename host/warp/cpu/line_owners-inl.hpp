@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "host/warp/cpu/cell_owners-inl.hpp"
+#include "host/warp/cpu/row_hex-inl.hpp"
 #include "host/warp/cpu/row_source-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
 
@@ -59,6 +60,7 @@ class LineOwners {
   bool has_open() const { return has_open_; }  ///< there are voxels without an owner
   const std::vector<FlatCells>& flat() const { return flat_; }  ///< ascending
   const RowSource* sources() const { return sources_.data(); }
+  const LineHexes& hexes() const { return hexes_; }  ///< of the sources of RowKind::curved
 
   /// Runs of row (j, k), sorted by cell.
   RowRun* runs(int j, int k) const {
@@ -85,6 +87,7 @@ class LineOwners {
   const SourceShape& source_;
   RasterCounts& counts_;
   std::vector<RowSource> sources_;  ///< one per pair that owns voxels of this line
+  LineHexes hexes_;
   std::vector<FlatCells> flat_;
   bool lists_open_;  ///< voxels without an owner are added to `flat_`
   bool has_open_ = false;
@@ -96,6 +99,7 @@ class LineOwners {
 
 inline HWY_NOINLINE void LineOwners::find(int ci_begin, int ci_end, int cj, int ck) {
   sources_.clear();
+  hexes_.clear();
   flat_.clear();
   has_open_ = false;
   for (auto& slice : run_counts_) std::fill_n(slice, cell_edge, 0);
@@ -123,7 +127,8 @@ inline void LineOwners::find_cell(const CellBox& box,
     counts_.covered += voxels;
     if (is_copied(job_, job_.setups[t]) && !has_transform(job_, t)) counts_.copied += voxels;
     if (work >= 0) return write_cell(box, bits, t);
-    sources_.emplace_back(job_, source_, job_.setups[t], box.corner, t);
+    RowSource& source = sources_.emplace_back(job_, source_, job_.setups[t], box.corner, t);
+    if (source.kind() == RowKind::curved) source.set_hex_part(hexes_.add(job_, t));
     add_runs(bits, cell);
   });
   if (job_.cell_covered.size > 0) {

@@ -124,19 +124,10 @@ ResampleMap make_map(const Grid& source,
 }
 
 WarpPlan make_plan(std::span<const VolumeView> sources, const ResampleOptions& options) {
-  if (sources.empty()) throw std::invalid_argument("sources: no volume");
+  check_sources(sources, "resample");
   WarpPlan plan;
   plan.sources.assign(sources.begin(), sources.end());
   for (const VolumeView& source : sources) {
-    check_grid(source.grid, "source");
-    if (source.grid != sources.front().grid) {
-      throw std::invalid_argument("sources: volumes on different grids; resample them one by one");
-    }
-    if (source.components < 1 || source.components > 9) {
-      throw std::invalid_argument("source: " + std::to_string(source.components) +
-                                  " components, expected 1 to 9");
-    }
-    if (source.data == nullptr) throw std::invalid_argument("source: no samples");
     if (source.memory != Memory::host) throw std::invalid_argument("source: not in host memory");
   }
   plan.options.filter = options.filter;

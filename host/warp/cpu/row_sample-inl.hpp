@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "host/warp/cpu/row_components-inl.hpp"
+#include "host/warp/cpu/row_hex-inl.hpp"
 #include "host/warp/cpu/row_label-inl.hpp"
 #include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
@@ -37,8 +38,10 @@ class RowSampler {
       : job_(job), shape_(shape), nearest_(job.filter == Filter::nearest) {}
 
   /// Writes the covered voxels of row (j, k).
-  /// @param runs  sorted by cell; their order within a cell is changed
-  void write(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+  /// @param hexes  those of the sources
+  /// @param runs   sorted by cell; their order within a cell is changed
+  void write(
+      const RowSource* sources, const LineHexes& hexes, RowRun* runs, int count, int j, int k) {
     if (job_.transforms.size > 0) count = write_transformed(sources, runs, count, j, k);
     if (is_wide(job_.filter)) return write_filtered(sources, runs, count, j, k);
     for (int r = 0; r < count;) {
@@ -48,7 +51,7 @@ class RowSampler {
         kind = std::max(kind, runs[past].kind);
       }
       if (kind >= RowKind::alone) {
-        write_mixed(sources, runs + r, past - r, j, k);
+        write_mixed(sources, hexes, runs + r, past - r, j, k);
       } else {
         add(kind, sources, runs + r, past - r, j, k);
       }
@@ -70,7 +73,15 @@ class RowSampler {
   }
 
   /// Writes a cell's row of which some runs are copied or written voxel by voxel.
-  HWY_NOINLINE void write_mixed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+  HWY_NOINLINE void write_mixed(
+      const RowSource* sources, const LineHexes& hexes, RowRun* runs, int count, int j, int k) {
+    const RowRun* curved[cell_edge];
+    int curved_count = 0;
+    for (int r = 0; r < count; ++r) {
+      if (runs[r].kind == RowKind::curved) curved[curved_count++] = runs + r;
+    }
+    if (curved_count > 0) write_curved(sources, hexes, curved, curved_count, j, k);
+    if (curved_count == count) return;
     int vectored_count = 0;  // runs to write in vectors; they are moved to the front
     RowKind kind = RowKind::inner;
     for (int r = 0; r < count; ++r) {
@@ -85,12 +96,61 @@ class RowSampler {
         }
         copy_run(job_, source, bits, j, k, job_.volume + cell_row * job_.source.components,
                  copier_);
-      } else {
+      } else if (source.kind() != RowKind::curved) {
         kind = std::max(kind, source.kind());
         std::swap(runs[vectored_count++], runs[r]);
       }
     }
     if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k);
+  }
+
+  /// Writes runs of RowKind::curved of a cell's row, those of one hexahedron together.
+  /// @param runs  their order is changed
+  void write_curved(const RowSource* sources,
+                    const LineHexes& hexes,
+                    const RowRun** runs,
+                    int count,
+                    int j,
+                    int k) {
+    const auto shape_of = [&](const RowRun* run) {
+      return hexes.part(sources[run->source].hex_part()).shape;
+    };
+    for (const RowRun** const end = runs + count; runs < end;) {
+      const int shape = shape_of(*runs);
+      const RowRun** const past =
+          std::partition(runs, end, [&](const RowRun* run) { return shape_of(run) == shape; });
+      add_curved(sources, hexes, runs, static_cast<int>(past - runs), j, k);
+      runs = past;
+    }
+  }
+
+  /// Adds runs of one hexahedron in a cell's row.
+  void add_curved(const RowSource* sources,
+                  const LineHexes& hexes,
+                  const RowRun* const* runs,
+                  int count,
+                  int j,
+                  int k) {
+    HexRow row = {};
+    set_hex_row(hexes, sources, runs, count, shape_.origin, j, k, row);
+    unsigned bits = 0;
+    for (int r = 0; r < count; ++r) bits |= runs[r]->bits;
+    const RowSource& first = sources[runs[0]->source];
+    const HexReach reach = reach_of_row(shape_, row, bits);
+    if (reach == HexReach::end) {
+      for (int r = 0; r < count; ++r) {
+        write_scalar_run(pixel_type_of<T>(), job_, sources[runs[r]->source].map(), runs[r]->bits, j,
+                         k, cell_edge * runs[r]->cell);
+      }
+    } else if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+      if (reach == HexReach::inner) {
+        add_hex_unit(shape_, nearest_, row, first, runs[0]->cell, bits, inner_);
+        if (inner_.count == inner_.row_units) flush(inner_);
+      } else {
+        add_hex_unit(shape_, nearest_, row, first, runs[0]->cell, bits, rim_);
+        if (rim_.count == rim_.row_units) flush(rim_);
+      }
+    }
   }
 
   void write_filtered(const RowSource* sources, RowRun* runs, int count, int j, int k) {

@@ -209,7 +209,7 @@ void write_run(
     const HexMap hex = hex_map_of(job, map.tet);
     for_voxels(bits, [&](int i) {
       const int x[3] = {map.corner[0] + i, map.corner[1] + j, map.corner[2] + k};
-      store_hex_voxel<true>(job, map.setup, hex, x, row + i);
+      store_hex_voxel<true>(job, hex, x, row + i);
     });
   } else {
     write_filtered(job, map, bits, j, k, row);

@@ -27,10 +27,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// How the voxels that a tetrahedron owns in a cell are sampled.
 enum class RowKind : std::uint8_t {
-  inner,  ///< in vectors of float32 positions; all neighbors are in the source
-  rim,    ///< in vectors; positions may lie outside the source and neighbors are clamped
-  alone,  ///< voxel by voxel: steep maps, hexahedra, float64, sources of 2^31 voxels or more
-  copied  ///< moved by whole voxels
+  inner,   ///< in vectors of float32 positions; all neighbors are in the source
+  rim,     ///< in vectors; positions may lie outside the source and neighbors are clamped
+  alone,   ///< voxel by voxel: steep maps, float64, sources of 2^31 voxels or more
+  curved,  ///< in hexahedra: in vectors of float64 positions
+  copied   ///< moved by whole voxels
 };
 
 /// The members of a SourceView that do not depend on the pixel type. The bounds limit the positions
@@ -101,9 +102,8 @@ class RowSource {
             int number)
       : setup_(&tet), number_(number), corner_{corner[0], corner[1], corner[2]} {
     set_map(source);
-    if (!source.is_vectored || tet.kind == MapKind::steep || tet.kind == MapKind::trilinear) {
-      kind_ = RowKind::alone;
-    }
+    if (!source.is_vectored || tet.kind == MapKind::steep) kind_ = RowKind::alone;
+    if (source.is_vectored && tet.kind == MapKind::trilinear) kind_ = RowKind::curved;
     if (is_copied(job, tet)) kind_ = RowKind::copied;
     const std::int64_t line = source.dims[0], slice = line * source.dims[1];
     origin_ = whole[2] * slice + whole[1] * line + whole[0];
@@ -118,6 +118,10 @@ class RowSource {
   const TetSetup& setup() const { return *setup_; }
   const int* corner() const { return corner_; }
   RowMap map() const { return {number_, *setup_, corner_, base, axis, whole}; }
+
+  /// Of RowKind::curved, its number in LineHexes.
+  int hex_part() const { return hex_part_; }
+  void set_hex_part(int part) { hex_part_ = part; }
 
   /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }
@@ -182,6 +186,7 @@ class RowSource {
 
   const TetSetup* setup_;
   int number_;
+  int hex_part_ = -1;
   RowKind kind_ = RowKind::alone;
   int corner_[3];
   std::int64_t origin_ = 0;

@@ -244,6 +244,31 @@ __device__ __forceinline__ GroupColumn column_at(const OutputFrame& frame, int x
           (frame.end[0] - frame.begin[0]) * (frame.end[1] - frame.begin[1])};
 }
 
+/// Computes and stores the voxels of a column.
+/// @param load  (k, tap, cube): loads the samples of voxel k; @returns whether it has a value, else
+///              it is background
+template <class T, class Load>
+__device__ __forceinline__ void store_loaded(const RasterJob<T>& job,
+                                             const GroupColumn& column,
+                                             const Load& load) {
+  T* const out = kept(job.volume + column.first);
+#if defined(__CUDACC__)
+#pragma unroll 1
+#endif
+  for (int k = 0; k < cell_edge; k += column_flight) {
+    InteriorTap taps[column_flight];
+    SampleCube<T> cubes[column_flight];
+    bool has_value[column_flight];
+    for (int v = 0; v < column_flight; ++v) has_value[v] = load(k + v, taps[v], cubes[v]);
+    for (int v = 0; v < column_flight; ++v) {
+      const T value = kept(interior_value(cubes[v], taps[v]));  // all of them without branches
+      if (column.is_stored(k + v)) {
+        out[(k + v) * column.slice] = has_value[v] ? value : job.background;
+      }
+    }
+  }
+}
+
 /// Computes and stores the voxels of a column. Called by all lanes of a warp.
 /// @tparam is_rim  whether positions may leave the source
 /// @tparam Sample  see samples_of()
@@ -257,39 +282,24 @@ __device__ __forceinline__ void store_column(const RasterJob<T>& job,
                                              int j) {
   const SourceSteps steps(job.source.dims);
   const auto x_i = static_cast<float>(i), x_j = static_cast<float>(j);
-  T* const out = kept(job.volume + column.first);
-#if defined(__CUDACC__)
-#pragma unroll 1
-#endif
-  for (int k = 0; k < cell_edge; k += column_flight) {
-    InteriorTap taps[column_flight];
-    SampleCube<T> cubes[column_flight];
-    bool is_defined[column_flight];
-    for (int v = 0; v < column_flight; ++v) {
-      const int owner = state.owners[k + v][j][i];
-      const PairMap& map = maps[owner];
-      float x[3];
-      local_position(map, x_i, x_j, static_cast<float>(k + v), x);
-      const Sample* source = static_cast<const Sample*>(map.source);
-      is_defined[v] = owner != 0;
-      if constexpr (is_rim) {
-        const RimTap tap = rim_tap(map.whole, job.source.dims, x);
-        is_defined[v] = is_defined[v] && tap.is_defined;
-        if (!tap.is_defined) source = samples_of<Sample>(job);
-        taps[v] = tap.tap;
-        cubes[v] = steps.cube(source + steps.offset_of(tap.tap), tap);
-      } else {
-        taps[v] = interior_tap(x);
-        cubes[v] = steps.cube(kept(source + steps.offset_of(taps[v])));
-      }
+  store_loaded(job, column, [&](int k, InteriorTap& of, SampleCube<T>& cube) {
+    const int owner = state.owners[k][j][i];
+    const PairMap& map = maps[owner];
+    float x[3];
+    local_position(map, x_i, x_j, static_cast<float>(k), x);
+    const Sample* source = static_cast<const Sample*>(map.source);
+    if constexpr (is_rim) {
+      const RimTap tap = rim_tap(map.whole, job.source.dims, x);
+      if (!tap.is_defined) source = samples_of<Sample>(job);
+      of = tap.tap;
+      cube = steps.cube(source + steps.offset_of(of), tap);
+      return owner != 0 && tap.is_defined;
+    } else {
+      of = interior_tap(x);
+      cube = steps.cube(kept(source + steps.offset_of(of)));
+      return owner != 0;
     }
-    for (int v = 0; v < column_flight; ++v) {
-      const T value = kept(interior_value(cubes[v], taps[v]));  // all of them without branches
-      if (column.is_stored(k + v)) {
-        out[(k + v) * column.slice] = is_defined[v] ? value : job.background;
-      }
-    }
-  }
+  });
 }
 
 /// The same for a cell that one tetrahedron holds, within the source.
@@ -299,25 +309,14 @@ __device__ __forceinline__ void store_single_column(
   const SourceSteps steps(job.source.dims);
   const PairMap map = shared_map;
   const Sample* const source = kept(static_cast<const Sample*>(map.source));
-  T* const out = kept(job.volume + column.first);
-#if defined(__CUDACC__)
-#pragma unroll 1
-#endif
-  for (int k = 0; k < cell_edge; k += column_flight) {
-    InteriorTap taps[column_flight];
-    SampleCube<T> cubes[column_flight];
-    for (int v = 0; v < column_flight; ++v) {
-      float x[3];
-      local_position(map, static_cast<float>(i), static_cast<float>(j), static_cast<float>(k + v),
-                     x);
-      taps[v] = interior_tap(x);
-      cubes[v] = steps.cube(source + steps.offset_of(taps[v]));
-    }
-    for (int v = 0; v < column_flight; ++v) {
-      const T value = kept(interior_value(cubes[v], taps[v]));
-      if (column.is_stored(k + v)) out[(k + v) * column.slice] = value;
-    }
-  }
+  const auto x_i = static_cast<float>(i), x_j = static_cast<float>(j);
+  store_loaded(job, column, [&](int k, InteriorTap& tap, SampleCube<T>& cube) {
+    float x[3];
+    local_position(map, x_i, x_j, static_cast<float>(k), x);
+    tap = interior_tap(x);
+    cube = steps.cube(source + steps.offset_of(tap));
+    return true;
+  });
 }
 
 /// Stores mask and owners of a column.

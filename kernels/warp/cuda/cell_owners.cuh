@@ -16,7 +16,6 @@ constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
 
 /// One bit for each of a thread's voxels (i, j, k_first + 2 d), k_first 0 or 1: bit 8 d.
 using VoxelBits = std::uint32_t;
-constexpr VoxelBits all_voxels = 0x01010101u;
 
 /// Data of up to `raster_chunk` tetrahedra in shared memory, one slot each.
 template <class Real>

@@ -162,7 +162,7 @@ TEST(ContactCuda, ARigidPileAndASoftBoxRideOnATrayAsOnTheCpu) {
   expect_parity(mixed_on_tray(), 30, 1e-6);
 }
 
-TEST(ContactCuda, RigidAndSoftBodiesUnderAClothRideOnATrayAsOnTheCpu) {
+TEST(LongContactCuda, RigidAndSoftBodiesUnderAClothRideOnATrayAsOnTheCpu) {
   expect_parity(cloth_over_tray(), 4, 1e-6);
 }
 

@@ -23,11 +23,11 @@ void ContactConstantsList::set(const ContactProblem& laws) {
   input.tangential_stiffness = view_of(adhesion.tangential_stiffness);
   input.intensity = view_of(adhesion.intensity);
   input.gap = view_of(adhesion.gap);
-  const ContactConstantsOp body{
+  const ContactConstantsOp op{
       input, view_of(slots_), {}, {constants.data(), static_cast<std::int64_t>(count)}};
   preload.resize(count);
   for (std::size_t c = 0; c < count; ++c) {
-    body(static_cast<std::int64_t>(c));
+    op(static_cast<std::int64_t>(c));
     preload[c] = constants[c].normal_spring *
                  (adhesion.gap[3 * c] / adhesion.time_step - laws.velocity_offset[3 * c]);
   }

@@ -64,11 +64,11 @@ void set_contact_rows(const SceneSurfaces& scene,
   rows.places.resize(rows.arms.size());
   rows.axes.resize(9 * count);
   const auto arm_count = static_cast<std::int64_t>(rows.arms.size());
-  const ContactRowsOp body = {{rows.axes.data(), static_cast<std::int64_t>(rows.axes.size())},
-                              {rows.arms.data(), arm_count},
-                              {rows.places.data(), arm_count},
-                              {reinterpret_cast<double*>(rows.value.data()),
-                               9 * static_cast<std::int64_t>(rows.value.size())}};
+  const ContactRowsOp op = {{rows.axes.data(), static_cast<std::int64_t>(rows.axes.size())},
+                            {rows.arms.data(), arm_count},
+                            {rows.places.data(), arm_count},
+                            {reinterpret_cast<double*>(rows.value.data()),
+                             9 * static_cast<std::int64_t>(rows.value.size())}};
   for_parts(threads, count, [&](std::size_t part, std::size_t first, std::size_t end) {
     const BlockArm* own = rows.parts[part].data();
     for (std::size_t c = first; c < end; ++c) {
@@ -80,7 +80,7 @@ void set_contact_rows(const SceneSurfaces& scene,
                                     is_frame(*own) ? 9 : 0};
         rows.block[index_of(next++)] = own->block;
         if (is_frame(*own)) rows.block[index_of(next++)] = own->block + 1;
-        body(a);
+        op(a);
       }
     }
   });

@@ -100,7 +100,7 @@ class IslandGradients<CpuExec> {
              const GradientArrays<T>& arrays,
              const GradientOptions& options,
              const Proceed& proceed) {
-    GradientScalars scalars;
+    IslandScalars scalars;
     const std::int64_t before = end_for(island).iterations;
     GradientEnd end =
         island_cg(exec, arrays, begin_of(island), end_of(island),

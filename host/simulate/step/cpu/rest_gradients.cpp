@@ -3,20 +3,15 @@
 #include "host/simulate/step/cpu/rest_gradients.hpp"
 
 #include <algorithm>
+#include <array>
 
+#include "host/exec/exec_cpu.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"
 
 namespace tetwarp {
 namespace {
 
 constexpr std::int64_t most_iterations = 60;
-
-/// Sum of x y over the numbers of the rows.
-double product(View<const double> x, View<const double> y, std::int64_t begin, std::int64_t end) {
-  double sum = 0;
-  for (std::int64_t k = 3 * begin; k < 3 * end; ++k) sum += x[k] * y[k];
-  return sum;
-}
 
 /// |r|^2 in the norm of D^-1.
 double square(const GradientArrays<double>& a,
@@ -31,6 +26,30 @@ double square(const GradientArrays<double>& a,
   }
   return sum;
 }
+
+/// The rows [begin, end) of an island as one index of conjugate gradients.
+struct RestSystem {
+  using Number = double;
+
+  const GradientArrays<double>& a;
+  std::int64_t begin, end;
+  RestFactor& factor;
+  std::array<double, 9> rotation;
+  View<double> x, r, z, p, q;
+  double target = 0;  ///< z is zero, which ends a solve, where |r|^2 is not larger
+
+  static const char* label() { return gradient_label(); }
+  NumberRange numbers(std::int64_t) const { return {3 * begin, 3 * end}; }
+  NumberRange coupled(std::int64_t i) const { return numbers(i); }
+  double multiply(std::int64_t) const { return vector_stages().product(a, begin, end).value[0]; }
+  void precondition(std::int64_t) const {
+    if (target > 0 && square(a, r, begin, end) <= target) {
+      std::fill_n(z.data + 3 * begin, 3 * (end - begin), 0.0);
+    } else {
+      factor.solve_turned(rotation, r.data + 3 * begin, z.data + 3 * begin);
+    }
+  }
+};
 
 }  // namespace
 
@@ -48,34 +67,24 @@ std::int64_t RestGradients::solve(const GradientArrays<double>& a,
                                   std::int64_t end,
                                   const GradientOptions& options) {
   RestFactor& factor = factors_->of_body(factors_->body_of_island(island));
-  const std::array<double, 9> rotation = factor.mean_rotation(position_);
-  const auto precondition = [&] {
-    factor.solve_turned(rotation, a.r.data + 3 * begin, a.z.data + 3 * begin);
-  };
+  RestSystem system{a,   begin, end, factor, factor.mean_rotation(position_),
+                    a.x, a.r,   a.z, a.p,    a.q};
   std::copy_n(a.x.data + 3 * begin, 3 * (end - begin), a.p.data + 3 * begin);
-  vector_stages().product(a, begin, end);
+  system.multiply(0);
   for (std::int64_t k = 3 * begin; k < 3 * end; ++k) a.r[k] = a.load[k] - a.q[k];
-  const double target = square_of(options.tolerance / 2) * square(a, a.load, begin, end);
-  precondition();
-  std::copy_n(a.z.data + 3 * begin, 3 * (end - begin), a.p.data + 3 * begin);
-  double along = product(a.r, a.z, begin, end);
+  CpuExec exec(1, StageClocks::off);
+  GradientScalars scalars{};
+  gradient_sum(exec, gradient_label(), 0, 1, GradientStartOp<RestSystem>{system}, &scalars.square);
+  system.target = square_of(options.tolerance / 2) * square(a, a.load, begin, end);
+  const GradientIteration<RestSystem> next{system, 0, 1, &scalars, &scalars.square};
   const std::int64_t most = std::min(most_iterations, options.max_iterations);
-  for (std::int64_t iteration = 1; iteration <= most; ++iteration) {
-    vector_stages().product(a, begin, end);
-    const double curvature = product(a.p, a.q, begin, end);
-    if (!(curvature > 0 && along > 0)) return iteration - 1;
-    const double step = along / curvature;
-    for (std::int64_t k = 3 * begin; k < 3 * end; ++k) {
-      a.x[k] += step * a.p[k];
-      a.r[k] -= step * a.q[k];
-    }
-    if (square(a, a.r, begin, end) <= target) return iteration;
-    precondition();
-    const double next = product(a.r, a.z, begin, end);
-    for (std::int64_t k = 3 * begin; k < 3 * end; ++k) a.p[k] = a.z[k] + next / along * a.p[k];
-    along = next;
+  std::int64_t iterations = 0;
+  while (iterations < most && scalars.square.value[0] > 0) {
+    next.run(exec);
+    if (scalars.step == 0) break;
+    ++iterations;
   }
-  return most;
+  return iterations;
 }
 
 }  // namespace tetwarp

@@ -12,21 +12,21 @@
 
 namespace tetwarp {
 
-inline void tet_forces(CpuExec& exec, const char* label, const TetForceOp& body) {
-  exec.for_ranges(label, body.tets.count, [&](std::int64_t begin, std::int64_t end) {
-    vector_stages().tet_forces(body, begin, end);
+inline void tet_forces(CpuExec& exec, const char* label, const TetForceOp& op) {
+  exec.for_ranges(label, op.tets.count, [&](std::int64_t begin, std::int64_t end) {
+    vector_stages().tet_forces(op, begin, end);
   });
 }
 
-inline void block_assemble(CpuExec& exec, const char* label, const BlockAssembleOp& body) {
-  exec.for_ranges(label, body.rows.upper.size, [&](std::int64_t begin, std::int64_t end) {
-    vector_stages().assemble(body, begin, end);
+inline void block_assemble(CpuExec& exec, const char* label, const BlockAssembleOp& op) {
+  exec.for_ranges(label, op.rows.upper.size, [&](std::int64_t begin, std::int64_t end) {
+    vector_stages().assemble(op, begin, end);
   });
 }
 
-/// IslandProductOp of a run of rows.
+/// GradientProductOp of a run of rows.
 template <class T>
-struct VectorProductBody {
+struct VectorProductOp {
   GradientArrays<T> a;
 
   template <int>
@@ -40,12 +40,12 @@ struct VectorProductBody {
 };
 
 template <class T>
-void island_product(CpuExec& exec,
-                    const GradientArrays<T>& a,
-                    std::int64_t begin,
-                    std::int64_t end,
-                    PlainSums<1>* curvature) {
-  exec.sum_runs_to(gradient_label(), begin, end, VectorProductBody<T>{a}, curvature);
+void gradient_product(CpuExec& exec,
+                      const GradientArrays<T>& a,
+                      std::int64_t begin,
+                      std::int64_t end,
+                      PlainSums<1>* curvature) {
+  exec.sum_runs_to(gradient_label(), begin, end, VectorProductOp<T>{a}, curvature);
 }
 
 }  // namespace tetwarp

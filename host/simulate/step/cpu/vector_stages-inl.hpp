@@ -26,16 +26,16 @@ inline void lane_rotations(const Lanes<width>* f, int count, Lanes<width>* r) {
 
 /// Tetrahedra index[0] to index[count - 1], count <= width; lanes from count on repeat the last.
 template <int width>
-inline void tet_force_lanes(const TetForceOp& body, const std::int32_t* index, int count) {
+inline void tet_force_lanes(const TetForceOp& op, const std::int32_t* index, int count) {
   using Real = Lanes<width>;
-  const TetConstants& tets = body.tets;
+  const TetConstants& tets = op.tets;
   Real x[12], g[9], f[9], r[9], gradient[12], force[12], lambda, mu;
   std::int64_t own[width];
   for (int k = 0; k < width; ++k) own[k] = index[k < count ? k : count - 1];
   for (int a = 0; a < 4; ++a) {
     const std::int32_t* const corner = tets.corner.data + a * tets.count;
     for (int k = 0; k < width; ++k) {
-      const double* const p = body.position.data + 3 * std::int64_t{corner[own[k]]};
+      const double* const p = op.position.data + 3 * std::int64_t{corner[own[k]]};
       for (int i = 0; i < 3; ++i) x[3 * a + i].v[k] = p[i];
     }
   }
@@ -56,25 +56,25 @@ inline void tet_force_lanes(const TetForceOp& body, const std::int32_t* index, i
     __builtin_memcpy(forces[i], &force[i].v, sizeof(forces[i]));
   }
   for (int k = 0; k < count; ++k) {
-    body.store(own[k], gradients[0] + k, forces[0] + k, width);
+    op.store(own[k], gradients[0] + k, forces[0] + k, width);
   }
 }
 
 template <int width>
-void tet_forces_of(const TetForceOp& body, std::int64_t begin, std::int64_t end) {
+void tet_forces_of(const TetForceOp& op, std::int64_t begin, std::int64_t end) {
   std::int32_t index[width];
   int count = 0;
   for (std::int64_t t = begin; t < end; ++t) {
-    if (body.is_at_rest(t)) {
-      body.skip(t);
+    if (op.is_at_rest(t)) {
+      op.skip(t);
       continue;
     }
     index[count++] = static_cast<std::int32_t>(t);
     if (count < width) continue;
-    tet_force_lanes<width>(body, index, count);
+    tet_force_lanes<width>(op, index, count);
     count = 0;
   }
-  if (count > 0) tet_force_lanes<width>(body, index, count);
+  if (count > 0) tet_force_lanes<width>(op, index, count);
 }
 
 /// The tetrahedra from `first` on, count <= width of them; adds their sums in order.
@@ -119,14 +119,13 @@ TetSums tet_energies_of(const TetShapes& tets, std::int64_t begin, std::int64_t 
 }
 
 template <int width>
-void assemble_of(const BlockAssembleOp& body, std::int64_t begin, std::int64_t end) {
-  const BlockAssembleOpOf<LaneColumn> own{body.rows,   body.from,      body.scalars,
-                                          body.rigid,  body.time_step, body.skips,
-                                          body.values, body.is_skipped};
+void assemble_of(const BlockAssembleOp& op, std::int64_t begin, std::int64_t end) {
+  const BlockAssembleOpOf<LaneColumn> own{op.rows,      op.from,  op.scalars, op.rigid,
+                                          op.time_step, op.skips, op.values,  op.is_skipped};
   for (std::int64_t k = begin; k < end; ++k) own(k);
 }
 
-/// IslandProductOp of rows [begin, end) with a block's column in a vector. Reads one number
+/// GradientProductOp of rows [begin, end) with a block's column in a vector. Reads one number
 /// beyond the last block.
 template <int width, class T>
 PlainSums<1> product_of(const GradientArrays<T>& a, std::int64_t begin, std::int64_t end) {

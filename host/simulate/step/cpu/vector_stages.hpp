@@ -33,10 +33,10 @@ struct TetSums {
 /// Each function does the indices [begin, end) of its stage.
 struct VectorStages {
   const char* name;  ///< of the instruction set
-  void (*tet_forces)(const TetForceOp& body, std::int64_t begin, std::int64_t end);
+  void (*tet_forces)(const TetForceOp& op, std::int64_t begin, std::int64_t end);
   /// @returns sums in the order of indices
   TetSums (*tet_energies)(const TetShapes& tets, std::int64_t begin, std::int64_t end);
-  void (*assemble)(const BlockAssembleOp& body, std::int64_t begin, std::int64_t end);
+  void (*assemble)(const BlockAssembleOp& op, std::int64_t begin, std::int64_t end);
   PlainSums<1> (*product)(const GradientArrays<double>& a, std::int64_t begin, std::int64_t end);
   PlainSums<1> (*product_float)(const GradientArrays<float>& a,
                                 std::int64_t begin,

@@ -157,7 +157,7 @@ class IslandGradients<CudaExec> {
   CudaExec& exec_;
   CudaExec large_exec_;  ///< of large islands; its launches are parts of one time, or of a graph
   DeviceLimits limits_;
-  DeviceVector<GradientScalars> scalars_;
+  DeviceVector<IslandScalars> scalars_;
   DeviceVector<IslandRows> small_;  ///< by falling size
   std::int64_t narrow_begin_ = 0;   ///< the first of them for narrow blocks
   std::vector<IslandRows> large_;

@@ -6,7 +6,7 @@
 #include <tetwarp/make.hpp>
 #include <tetwarp/scene.hpp>
 
-namespace tetwarp::cli {
+namespace tetwarp::view {
 
 /// Displacement and rotation vector of a path at a time, linear between its points.
 PathPoint path_at(const Path& path, double time);
@@ -17,4 +17,4 @@ std::optional<Surface> surface_of(const Obstacle& obstacle, double time);
 /// A plane; nothing for other obstacles.
 std::optional<DrawnPlane> plane_of(const Obstacle& obstacle, double time);
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp::view

@@ -1,13 +1,13 @@
 /// @file obstacle_surface.cpp
 /// Surfaces of obstacles, moved along their paths.
-#include "host/cli/simulate/obstacle_surface.hpp"
+#include "host/view/obstacle_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <variant>
 
-namespace tetwarp::cli {
+namespace tetwarp::view {
 namespace {
 using std::numbers::pi;
 
@@ -120,4 +120,4 @@ std::optional<DrawnPlane> plane_of(const Obstacle& obstacle, double time) {
   return DrawnPlane{moved(plane->point, {0, 0, 0}, at), turned(plane->normal, at.axis_angle)};
 }
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp::view

@@ -1,0 +1,175 @@
+/// @file cmd_view.cpp
+/// The subcommand view, which starts the program tetwarp-view.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <tetwarp/scene_io.hpp>
+#include <vector>
+
+#include "host/base/parallel.hpp"
+#include "host/cli/common/commands.hpp"
+#include "host/cli/common/declare.hpp"
+#include "host/cli/common/file_checks.hpp"
+#include "host/view/view_options.hpp"
+
+namespace tetwarp::cli {
+namespace {
+namespace fs = std::filesystem;
+
+std::vector<fs::path> viewer_places() {
+  if (const char* const chosen = std::getenv("TETWARP_VIEWER")) return {chosen};
+  std::error_code error;
+  const fs::path folder = fs::canonical("/proc/self/exe", error).parent_path();
+  return {folder / "tetwarp-view", (folder / TETWARP_VIEWER_FROM_HERE).lexically_normal(),
+          TETWARP_VIEWER_INSTALLED};
+}
+
+std::string find_viewer() {
+  std::string searched;
+  for (const fs::path& place : viewer_places()) {
+    if (access(place.c_str(), X_OK) == 0) return place;
+    searched += (searched.empty() ? "" : ", ") + place.string();
+  }
+  throw std::runtime_error("view needs the program tetwarp-view, which is not at " + searched +
+                           "; it is built where VTK 9 with X11 is found: install libvtk9-dev and "
+                           "build again, or set TETWARP_VIEWER to its path");
+}
+
+/// Replaces this process.
+int run_view(const view::ViewOptions& options) {
+  std::vector<std::string> inputs;
+  for (const std::string& file : {options.scene_file, options.replay}) {
+    if (!file.empty()) inputs.push_back(file);
+  }
+  for (const std::string& file : {options.screenshot, options.record, options.checkpoint}) {
+    if (!file.empty()) check_output_file(file, inputs);
+  }
+  std::vector<std::string> words = view::words_of(options);
+  words.insert(words.begin(), find_viewer());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  execv(pointers[0], pointers.data());
+  throw std::runtime_error(words[0] + ": cannot be started: " + std::strerror(errno));
+}
+
+void set_scene(const std::string& scene, view::ViewOptions& options) {
+  const std::vector<std::string> names = scene_names();
+  std::error_code error;
+  const bool is_name = std::ranges::count(names, scene) > 0 && !fs::exists(scene, error);
+  (is_name ? options.scene_name : options.scene_file) = scene;
+}
+
+void declare_picture(CLI::App& app, view::ViewOptions& options) {
+  app.add_option_function<std::array<std::int64_t, 2>>(
+         "--size",
+         [&options](const std::array<std::int64_t, 2>& size) {
+           options.width = size[0];
+           options.height = size[1];
+         },
+         "width and height of the window [960,640]")
+      ->delimiter(',')
+      ->check(between(64, 8192))
+      ->type_name("W,H");
+  app.add_option_function<std::array<double, 6>>(
+         "--camera", [&options](const std::array<double, 6>& camera) { options.camera = camera; },
+         "eye and target [whole scene at the start]")
+      ->delimiter(',')
+      ->check(finite_number())
+      ->type_name("X,Y,Z,TX,TY,TZ");
+  app.add_option("--preset", options.preset, "colors of volumes [ct]")
+      ->check(CLI::IsMember({"ct", "mr"}).description(""))
+      ->type_name("ct|mr");
+  app.add_option("--voxels", options.voxels, "most voxels of a warped volume, about [2000000]")
+      ->check(between(1000, 1'000'000'000))
+      ->type_name("N");
+  app.add_option("--screenshot", options.screenshot, "picture of the end")->type_name("FILE.png");
+}
+
+void declare_simulation(CLI::App& app, view::ViewOptions& options) {
+  app.add_flag("--paused", options.paused, "wait for a key before the first step");
+  app.add_option("--steps", options.steps, "close the window after N steps [no limit]")
+      ->check(at_least(0))
+      ->type_name("N");
+  app.add_flag("--fast", options.fast, "step as fast as possible, not only as fast as time passes");
+  app.add_option("--max-step-seconds", options.max_step_seconds,
+                 "wall time of a step: solves end in time with what they have [no limit]")
+      ->check(above_zero())
+      ->type_name("S");
+  app.add_flag("--untangle", options.untangle,
+               "shrink elastic bodies and cloth that intersect others at the start, and let them "
+               "grow back within 0.2 s");
+  app.add_option("--backend", options.backend, "where to compute [auto]")
+      ->check(CLI::IsMember(words_of(choices_of<Backend>())).description(""))
+      ->type_name(CLI::detail::join(words_of(choices_of<Backend>()), "|"));
+  app.add_option("--device", options.device, "CUDA device number [0]")
+      ->check(at_least(0))
+      ->type_name("N");
+  app.add_option("--threads", options.threads,
+                 "threads of the cpu back end, 0 for all cores [0]; any number: same results")
+      ->check(between(0, max_threads))
+      ->type_name("N");
+}
+
+void declare_input(CLI::App& app, view::ViewOptions& options) {
+  app.add_option("--grab-radius", options.grab_radius,
+                 "what the mouse holds of an elastic body or cloth [0.08 of its size]")
+      ->check(above_zero())
+      ->type_name("M");
+  app.add_option("--grab-stiffness", options.grab_stiffness,
+                 "of the spring to the mouse, N/m [from mass and stiffness of the body]")
+      ->check(above_zero())
+      ->type_name("K");
+  app.add_option("--record", options.record, "write what the mouse did, by step")
+      ->type_name("FILE");
+  app.add_option("--replay", options.replay, "repeat it: same results")->type_name("FILE");
+  app.add_option("--checkpoint", options.checkpoint,
+                 "file for the state at the end, for tetwarp simulate --restart")
+      ->type_name("FILE");
+}
+
+void check_view(const view::ViewOptions& options) {
+  const bool has_limit = options.max_step_seconds < std::numeric_limits<double>::infinity();
+  if (has_limit && (!options.record.empty() || !options.replay.empty())) {
+    throw CLI::ValidationError("--max-step-seconds",
+                               "steps that end by the clock cannot be repeated; leave it out with "
+                               "--record and --replay");
+  }
+  if (!options.screenshot.empty() && !options.screenshot.ends_with(".png")) {
+    throw CLI::ValidationError("--screenshot", "the name of a picture ends in .png");
+  }
+}
+}  // namespace
+
+void add_view_command(CLI::App& app, Run& run) {
+  auto options = std::make_shared<view::ViewOptions>();
+  CLI::App* command =
+      add_subcommand(app, "view", "Watch a scene move in a window, and pull at it with the mouse",
+                     "SCENE|NAME [options]",
+                     "  tetwarp view torso\n"
+                     "  tetwarp view scene.json --paused --max-step-seconds 0.02\n"
+                     "  tetwarp view candy --steps 100 --screenshot candy.png\n"
+                     "Key h shows what mouse and keys do.\n");
+  command
+      ->add_option_function<std::string>(
+          "SCENE", [options](const std::string& scene) { set_scene(scene, *options); },
+          "scene file, or the name of a scene that ships with the command")
+      ->required()
+      ->type_name("");
+  declare_picture(*command, *options);
+  declare_simulation(*command, *options);
+  declare_input(*command, *options);
+  command->callback([options, &run] {
+    check_view(*options);
+    run = [options] { return run_view(*options); };
+  });
+}
+
+}  // namespace tetwarp::cli

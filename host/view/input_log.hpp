@@ -1,0 +1,41 @@
+/// @file input_log.hpp
+/// What a user did to a simulation, by step, as a file.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tetwarp/simulate.hpp>
+
+namespace tetwarp::view {
+
+enum class InputKind {
+  grab,     ///< holds a body at a point
+  move,     ///< the held point is pulled to another place
+  release,  ///< lets go
+  restart   ///< the state of the start
+};
+
+/// Acts before a step.
+struct InputEvent {
+  std::int64_t tick = 0;  ///< steps made before it; goes on counting after a restart
+  InputKind kind = InputKind::release;
+  PointHandle handle = {};  ///< of a grab; its name is not kept
+  Point3 displacement{};    ///< of a move: of the anchors from where they started [m]
+
+  bool operator==(const InputEvent&) const = default;
+};
+
+struct InputLog {
+  std::string scene;               ///< file or name
+  std::vector<InputEvent> events;  ///< ticks do not fall
+  std::int64_t ticks = 0;          ///< steps made in all
+};
+
+/// The lines of a file; numbers keep all their bits.
+std::string text_of(const InputLog& log);
+
+/// @throws IoError  in one line naming the file and the line
+InputLog read_input_log(const std::string& path);
+
+}  // namespace tetwarp::view

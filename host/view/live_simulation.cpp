@@ -1,0 +1,295 @@
+/// @file live_simulation.cpp
+/// The thread of a live simulation.
+#include "host/view/live_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <tetwarp/names.hpp>
+#include <utility>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp::view {
+namespace {
+constexpr const char* handle_name = "mouse";
+// Times the size of a body: what the mouse holds of an elastic body or cloth.
+constexpr double grab_share = 0.08;
+
+SimulateOptions simulate_options(const ViewOptions& of) {
+  SimulateOptions options;
+  for (const EnumName<Backend>& entry : names_of<Backend>()) {
+    if (entry.name == of.backend) options.backend = entry.value;
+  }
+  options.device = static_cast<int>(of.device);
+  options.threads = static_cast<int>(of.threads);
+  options.max_step_seconds = of.max_step_seconds;
+  options.untangle = of.untangle;
+  return options;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+}  // namespace
+
+LiveSimulation::LiveSimulation(Scene scene,
+                               const ViewOptions& options,
+                               std::optional<InputLog> replay)
+    : options_(options),
+      simulator_(std::move(scene), simulate_options(options)),
+      volumes_(simulator_, options),
+      start_(simulator_.checkpoint()),
+      replay_(std::move(replay)),
+      is_paused_(options.paused) {
+  log_.scene = options.scene();
+  if (replay_) last_tick_ = replay_->ticks;
+  if (options.steps) last_tick_ = *options.steps;
+}
+
+LiveSimulation::~LiveSimulation() {
+  end();
+}
+
+void LiveSimulation::begin() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void LiveSimulation::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+  log_.ticks = tick_;
+}
+
+void LiveSimulation::give(const Order& order) {
+  {
+    const std::lock_guard lock(mutex_);
+    const bool replaces =
+        order.kind == OrderKind::pull && !orders_.empty() && orders_.back().kind == OrderKind::pull;
+    if (replaces) {
+      orders_.back() = order;
+    } else {
+      orders_.push_back(order);
+    }
+  }
+  wake_.notify_all();
+}
+
+std::vector<Order> LiveSimulation::take_orders(bool waits) {
+  std::unique_lock lock(mutex_);
+  if (waits) wake_.wait(lock, [this] { return is_ending_ || !orders_.empty(); });
+  return std::exchange(orders_, {});
+}
+
+bool LiveSimulation::may_step() const {
+  return !has_failed_ && tick_ < last_tick_ && (!is_paused_ || single_steps_ > 0);
+}
+
+void LiveSimulation::run() {
+  try {
+    loop();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+/// A frame of an earlier state, or without any, that says why no more follow.
+void LiveSimulation::fail(const std::string& problem) {
+  LiveFrame& frame = frames_.back();
+  frame.message = problem;
+  frame.has_failed = frame.is_last = true;
+  frames_.publish();
+}
+
+void LiveSimulation::loop() {
+  due_ = Clock::now();
+  while (true) {
+    repeat_input();
+    const bool steps = may_step();
+    if (!is_published_ && (!steps || !frames_.is_waiting())) publish();
+    for (const Order& order : take_orders(!steps)) follow(order);
+    const bool has_steps = may_step();
+    {
+      const std::lock_guard lock(mutex_);
+      if (is_ending_ && !(has_steps && is_paused_)) return;
+    }
+    if (!has_steps) continue;
+    take_step();
+    wait_for_time();
+  }
+}
+
+PointHandle LiveSimulation::handle_at(std::size_t body, const Point3& point) const {
+  const BodyMesh& of = simulator_.body(body);
+  const Bounds bounds = bounds_of(simulator_.surface_positions(body));
+  const double size = norm(minus(bounds.high, bounds.low));
+  PointHandle handle{.body = simulator_.scene().bodies[body].name, .center = point};
+  handle.radius = options_.grab_radius.value_or(grab_share * size);
+  // A free body follows within about 0.1 s. An elastic one is pressed in by about half of the way
+  // of the mouse: a disc of radius r meets the stiffness 4 mu r / (1 - nu).
+  const double free = 400 * of.mass, pressed = 8 * mean_of(of.shear_modulus) * handle.radius;
+  handle.stiffness = options_.grab_stiffness.value_or(std::max({free, pressed, 1e-9}));
+  handle.damping = 0.2 * std::sqrt(handle.stiffness * of.mass);
+  return handle;
+}
+
+/// Orders that change the simulation become events, which are recorded.
+void LiveSimulation::follow(const Order& order) {
+  InputEvent event{.tick = tick_};
+  switch (order.kind) {
+    case OrderKind::pause:
+      is_paused_ = !is_paused_;
+      due_ = Clock::now();
+      is_published_ = false;
+      return;
+    case OrderKind::step:
+      single_steps_ = is_paused_ ? single_steps_ + 1 : 0;
+      is_paused_ = true;
+      is_published_ = false;
+      return;
+    case OrderKind::volumes_on:
+    case OrderKind::volumes_off:
+      warps_ = order.kind == OrderKind::volumes_on;
+      is_published_ = false;
+      return;
+    case OrderKind::restart:
+      event.kind = InputKind::restart;
+      break;
+    case OrderKind::grab:
+      event.kind = InputKind::grab;
+      event.handle = handle_at(order.body, order.point);
+      break;
+    case OrderKind::pull:
+      if (!held_) return;
+      event.kind = InputKind::move;
+      event.displacement = minus(order.point, held_->start);
+      break;
+    case OrderKind::release:
+      if (!held_) return;
+      event.kind = InputKind::release;
+      break;
+  }
+  if (replay_) {
+    message_ = "a replay takes no input";
+    is_published_ = false;
+    return;
+  }
+  act(event);
+}
+
+void LiveSimulation::act(const InputEvent& event) {
+  is_published_ = false;
+  message_.clear();
+  try {
+    if (event.kind == InputKind::grab) {
+      PointHandle handle = event.handle;
+      handle.name = handle_name;
+      simulator_.add_handle(handle);
+      const std::vector<Body>& bodies = simulator_.scene().bodies;
+      const auto body = std::ranges::find(bodies, handle.body, &Body::name) - bodies.begin();
+      held_ = Held{static_cast<std::size_t>(body), handle.center, handle.center, handle.stiffness};
+    } else if (event.kind == InputKind::move) {
+      simulator_.move_handle(handle_name, event.displacement);
+      if (held_) held_->target = plus(held_->start, event.displacement);
+    } else if (event.kind == InputKind::release) {
+      simulator_.release_handle(handle_name);
+      held_.reset();
+    } else {
+      simulator_.restore(start_);
+      held_.reset();
+      has_failed_ = false;
+    }
+    log_.events.push_back(event);
+  } catch (const std::exception& error) {
+    message_ = error.what();
+  }
+}
+
+/// Acts as the events that were recorded before the next step.
+void LiveSimulation::repeat_input() {
+  if (!replay_) return;
+  const std::vector<InputEvent>& events = replay_->events;
+  while (next_event_ < events.size() && events[next_event_].tick <= tick_) {
+    act(events[next_event_++]);
+  }
+}
+
+void LiveSimulation::take_step() {
+  is_published_ = false;
+  single_steps_ = std::max<std::int64_t>(single_steps_ - 1, 0);
+  try {
+    simulator_.step();
+    count_step();
+  } catch (const std::exception& error) {
+    message_ = error.what();
+    has_failed_ = true;
+  }
+}
+
+void LiveSimulation::count_step() {
+  ++tick_;
+  if (simulator_.record().out_of_time) ++late_steps_;
+  const Clock::time_point now = Clock::now();
+  recent_.push_back(now);
+  std::erase_if(recent_,
+                [&](Clock::time_point end) { return now - end > std::chrono::seconds(1); });
+}
+
+/// A scene does not run faster than its time.
+void LiveSimulation::wait_for_time() {
+  if (options_.fast || replay_) return;
+  const auto step = std::chrono::duration<double>(simulator_.scene().time_step);
+  const Clock::time_point now = Clock::now();
+  due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(step), now);
+  if (due_ == now) return;
+  if (!is_published_ && !frames_.is_waiting()) publish();
+  std::unique_lock lock(mutex_);
+  wake_.wait_until(lock, due_, [this] { return is_ending_; });
+}
+
+void LiveSimulation::publish() {
+  LiveFrame& frame = frames_.back();
+  frame.step = simulator_.step_index();
+  frame.tick = tick_;
+  frame.time = simulator_.time();
+  frame.points.resize(simulator_.scene().bodies.size());
+  for (std::size_t b = 0; b < frame.points.size(); ++b) {
+    frame.points[b] = simulator_.surface_positions(b);
+  }
+  if (warps_) {
+    volumes_.warp(frame.volumes);
+  } else {
+    frame.volumes.clear();
+  }
+  const StepRecord& record = simulator_.record();
+  // Impulses are those of the last part of a step.
+  const double part = simulator_.scene().time_step /
+                      static_cast<double>(std::max<std::int64_t>(record.substeps, 1));
+  frame.contacts.clear();
+  for (const ContactPoint& contact : simulator_.contacts()) {
+    frame.contacts.push_back({contact.position, times(1 / part, contact.impulse)});
+  }
+  frame.grab.reset();
+  if (held_) {
+    const Point3 force = record.bodies.empty() ? Point3{} : record.bodies[held_->body].handle_force;
+    frame.grab =
+        GrabView{minus(held_->target, times(1 / held_->stiffness, force)), held_->target, force};
+  }
+  frame.is_paused = is_paused_;
+  frame.is_converged = record.converged;
+  frame.is_last = tick_ >= last_tick_;
+  frame.steps_per_second = static_cast<double>(recent_.size());
+  frame.late_steps = late_steps_;
+  frame.message = message_;
+  frame.has_failed = has_failed_;
+  frames_.publish();
+  is_published_ = true;
+}
+
+}  // namespace tetwarp::view

@@ -1,0 +1,110 @@
+/// @file live_simulation.hpp
+/// LiveSimulation: a simulation that steps in its own thread and takes orders between steps.
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <tetwarp/simulate.hpp>
+
+#include "host/view/input_log.hpp"
+#include "host/view/live_frame.hpp"
+#include "host/view/live_volumes.hpp"
+#include "host/view/triple_buffer.hpp"
+#include "host/view/view_options.hpp"
+
+namespace tetwarp::view {
+
+enum class OrderKind { pause, step, restart, grab, pull, release, volumes_on, volumes_off };
+
+/// What the user wants.
+struct Order {
+  OrderKind kind = OrderKind::pause;
+  std::size_t body = 0;  ///< of a grab
+  Point3 point{};        ///< grab: on the surface; pull: where that point is to be [world]
+};
+
+/// Owns the Simulator and the Warpers; only its thread uses them once it has begun.
+class LiveSimulation {
+ public:
+  /// @param scene   checked by its reader
+  /// @param replay  what to repeat, in place of grabs and restarts of the user
+  /// @throws std::invalid_argument  as Simulator
+  LiveSimulation(Scene scene, const ViewOptions& options, std::optional<InputLog> replay);
+  LiveSimulation(const LiveSimulation&) = delete;
+  LiveSimulation& operator=(const LiveSimulation&) = delete;
+  ~LiveSimulation();
+
+  /// Of the start; not to be used after begin().
+  const Simulator& simulator() const { return simulator_; }
+  const std::vector<VolumeBody>& volumes() const { return volumes_.bodies(); }
+
+  void begin();
+  /// Never waits. Of successive pulls only the last one acts.
+  void give(const Order& order);
+  TripleBuffer<LiveFrame>& frames() { return frames_; }
+  /// Ends the thread after the running step and the single steps that were ordered.
+  void end();
+
+  /// After end(): the steps made, and what the user did before them.
+  const InputLog& log() const { return log_; }
+  std::vector<std::byte> checkpoint() const { return simulator_.checkpoint(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Held {
+    std::size_t body;
+    Point3 start;      ///< where it was taken
+    Point3 target;     ///< where it is to be
+    double stiffness;  ///< [N/m]
+  };
+
+  void run();
+  void loop();
+  void fail(const std::string& problem);
+  std::vector<Order> take_orders(bool waits);
+  void follow(const Order& order);
+  void act(const InputEvent& event);
+  void repeat_input();
+  bool may_step() const;
+  void take_step();
+  void wait_for_time();
+  void count_step();
+  void publish();
+  PointHandle handle_at(std::size_t body, const Point3& point) const;
+
+  ViewOptions options_;
+  Simulator simulator_;
+  LiveVolumes volumes_;
+  std::vector<std::byte> start_;
+  std::optional<InputLog> replay_;
+  std::size_t next_event_ = 0;  ///< of the replay
+  std::int64_t last_tick_ = std::numeric_limits<std::int64_t>::max();
+  InputLog log_;
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::vector<Order> orders_;  ///< guarded by the mutex
+  bool is_ending_ = false;     ///< guarded by the mutex
+
+  std::int64_t tick_ = 0, late_steps_ = 0;
+  std::int64_t single_steps_ = 0;  ///< to take while paused
+  bool is_paused_ = false, has_failed_ = false, warps_ = true;
+  bool is_published_ = false;  ///< whether the state is in a frame
+  std::optional<Held> held_;
+  std::string message_;
+  Clock::time_point due_;                  ///< of the next step
+  std::vector<Clock::time_point> recent_;  ///< ends of the steps of the last second
+
+  TripleBuffer<LiveFrame> frames_;
+  std::thread thread_;
+};
+
+}  // namespace tetwarp::view

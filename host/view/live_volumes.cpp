@@ -1,0 +1,117 @@
+/// @file live_volumes.cpp
+/// Sources as int16, grids that follow bodies, warps.
+#include "host/view/live_volumes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "host/base/pixel_dispatch.hpp"
+#include "host/base/point3.hpp"
+
+namespace tetwarp::view {
+namespace {
+constexpr double margin = 0.1;  // of the box, on each side
+
+/// The first component of each voxel, with the range of its values.
+Volume scaled(const Volume& volume, VolumeBody& range) {
+  Volume result = make_volume(volume.grid, PixelType::int16);
+  const std::span<std::int16_t> to = result.samples<std::int16_t>();
+  with_pixel_type(volume.type, [&](auto tag) {
+    using T = decltype(tag);
+    const std::span<const T> from = volume.samples<T>();
+    const auto step = static_cast<std::size_t>(volume.components);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t v = 0; v < from.size(); v += step) {
+      const auto value = static_cast<double>(from[v]);
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    if (!(high > low)) high = low + 1;
+    for (std::size_t v = 0; v < to.size(); ++v) {
+      const double share = (static_cast<double>(from[v * step]) - low) / (high - low);
+      to[v] = static_cast<std::int16_t>(std::isfinite(share) ? share * largest_sample : 0);
+    }
+    range.low = low;
+    range.high = high;
+  });
+  return result;
+}
+
+bool lies_in(const std::vector<Point3>& points, const Grid& grid) {
+  return std::ranges::all_of(points, [&](const Point3& x) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double end = grid.origin[d] + grid.spacing[d] * static_cast<double>(grid.dims[d] - 1);
+      if (x[d] < grid.origin[d] || x[d] > end) return false;
+    }
+    return true;
+  });
+}
+}  // namespace
+
+Grid grid_around(const std::vector<Point3>& points,
+                 double least_spacing,
+                 std::int64_t most_voxels) {
+  const Bounds bounds = bounds_of(points);
+  Grid grid;
+  Point3 size{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    size[d] = std::max((1 + 2 * margin) * (bounds.high[d] - bounds.low[d]), least_spacing);
+  }
+  const double volume = size[0] * size[1] * size[2];
+  const double spacing =
+      std::max(least_spacing, std::cbrt(volume / static_cast<double>(most_voxels)));
+  for (std::size_t d = 0; d < 3; ++d) {
+    grid.dims[d] = static_cast<std::int64_t>(std::ceil(size[d] / spacing)) + 1;
+    grid.spacing[d] = spacing;
+    const double way = spacing * static_cast<double>(grid.dims[d] - 1);
+    grid.origin[d] = (bounds.low[d] + bounds.high[d] - way) / 2;
+  }
+  return grid;
+}
+
+LiveVolumes::LiveVolumes(const Simulator& simulator, const ViewOptions& options)
+    : simulator_(simulator),
+      most_voxels_(options.voxels),
+      device_(static_cast<int>(options.device)),
+      threads_(static_cast<int>(options.threads)) {
+  const std::vector<Body>& bodies = simulator.scene().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto* image = std::get_if<ImageGeometry>(&bodies[b].geometry);
+    if (image == nullptr || simulator.body(b).mesh.cell_count() == 0) continue;
+    VolumeBody& body = bodies_.emplace_back();
+    body.body = b;
+    const bool holds_labels =
+        bodies[b].lookup == TransferLookup::label && !bodies[b].transfer.empty();
+    followers_.push_back({scaled(image->volume, body), holds_labels, {}, {}});
+  }
+}
+
+void LiveVolumes::place(std::size_t volume, const std::vector<Point3>& nodes) {
+  Follower& follower = followers_[volume];
+  if (follower.warper && lies_in(nodes, follower.grid)) return;
+  follower.grid = grid_around(nodes, std::ranges::min(follower.source.grid.spacing), most_voxels_);
+  WarpOptions options;
+  options.filter = follower.holds_labels ? Filter::nearest : Filter::linear;
+  options.output_grid = follower.grid;
+  options.backend = simulator_.backend();
+  options.device = device_;
+  options.threads = threads_;
+  follower.warper.emplace(follower.source, simulator_.body(bodies_[volume].body).mesh, options);
+}
+
+void LiveVolumes::warp(std::vector<VolumeFrame>& frames) {
+  frames.resize(bodies_.size());
+  for (std::size_t v = 0; v < bodies_.size(); ++v) {
+    place(v, simulator_.node_positions(bodies_[v].body));
+    const Follower& follower = followers_[v];
+    frames[v].grid = follower.grid;
+    frames[v].samples.resize(static_cast<std::size_t>(follower.grid.voxel_count()));
+    void* const samples = frames[v].samples.data();
+    followers_[v].warper->step(simulator_.positions(bodies_[v].body), {.volumes = {&samples, 1}});
+  }
+}
+
+}  // namespace tetwarp::view

@@ -1,0 +1,44 @@
+/// @file view_options.hpp
+/// What the command tells the program tetwarp-view.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tetwarp::view {
+
+/// Choices of a window. Numbers have been checked by the command.
+struct ViewOptions {
+  std::string scene_file;
+  std::string scene_name;  ///< of a scene that ships with the command, instead of a file
+  std::string backend = "auto";
+  std::int64_t device = 0, threads = 0;
+  double max_step_seconds = std::numeric_limits<double>::infinity();
+  bool untangle = false;
+  bool paused = false;
+  bool fast = false;                                   ///< no waiting for the time of the scene
+  std::optional<std::int64_t> steps;                   ///< then the window closes
+  std::int64_t width = 960, height = 640;              ///< [pixel]
+  std::optional<std::array<double, 6>> camera;         ///< eye, target
+  std::string preset = "ct";                           ///< colors of volumes: ct or mr
+  std::int64_t voxels = 2'000'000;                     ///< at most, of a warped volume
+  std::optional<double> grab_radius;                   ///< [m]
+  std::optional<double> grab_stiffness;                ///< [N/m]
+  std::string screenshot, record, replay, checkpoint;  ///< files; empty: none
+
+  bool operator==(const ViewOptions&) const = default;
+
+  /// The scene, for messages.
+  const std::string& scene() const { return scene_file.empty() ? scene_name : scene_file; }
+};
+
+/// One word per member that is not its default: name=value.
+std::vector<std::string> words_of(const ViewOptions& options);
+
+/// @throws std::invalid_argument  naming a word that words_of() does not write
+ViewOptions options_of(const std::vector<std::string>& words);
+
+}  // namespace tetwarp::view

@@ -1,0 +1,32 @@
+/// @file view_scene.cpp
+/// Reads from a simulation what its window keeps.
+#include "host/view/view_scene.hpp"
+
+#include "host/base/point3.hpp"
+#include "host/view/scene_look.hpp"
+
+namespace tetwarp::view {
+
+ViewScene view_scene_of(const LiveSimulation& simulation, const ViewOptions& options) {
+  const Simulator& simulator = simulation.simulator();
+  ViewScene scene;
+  scene.name = options.scene();
+  scene.obstacles = simulator.scene().obstacles;
+  scene.volumes = simulation.volumes();
+  scene.max_step_seconds = options.max_step_seconds;
+  Bounds bounds;
+  for (std::size_t b = 0; b < simulator.scene().bodies.size(); ++b) {
+    scene.triangles.push_back(simulator.body(b).surface.triangles);
+    for (const Point3& x : simulator.surface_positions(b)) bounds.include(x);
+  }
+  const double aspect = static_cast<double>(options.width) / static_cast<double>(options.height);
+  scene.camera = options.camera ? camera_at(*options.camera) : scene_camera(simulator, aspect);
+  render_surfaces({}, {}, {scene.camera, 1, 1});  // throws on a camera that shows nothing
+  if (bounds.high[0] >= bounds.low[0]) {
+    scene.center = times(0.5, plus(bounds.low, bounds.high));
+    scene.size = norm(minus(bounds.high, bounds.low));
+  }
+  return scene;
+}
+
+}  // namespace tetwarp::view

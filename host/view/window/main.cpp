@@ -1,0 +1,96 @@
+/// @file main.cpp
+/// The program tetwarp-view, which `tetwarp view` starts: tetwarp-view NAME=VALUE...
+#include <X11/Xlib.h>
+
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/error.hpp>
+#include <tetwarp/scene_io.hpp>
+#include <utility>
+#include <vector>
+
+#include "host/view/live_simulation.hpp"
+#include "host/view/view_options.hpp"
+#include "host/view/view_scene.hpp"
+#include "host/view/window/view_window.hpp"
+#include "io/files/finished_file.hpp"
+
+namespace tetwarp::view {
+namespace {
+
+/// VTK aborts without a display.
+void check_display() {
+  Display* const display = XOpenDisplay(nullptr);
+  if (display != nullptr) {
+    XCloseDisplay(display);
+    return;
+  }
+  const char* const name = std::getenv("DISPLAY");
+  throw std::runtime_error((name == nullptr || *name == 0
+                                ? std::string("there is no display (DISPLAY is not set)")
+                                : "display '" + std::string(name) + "' cannot be opened") +
+                           "; start it from a desktop, through ssh -X, or within xvfb-run");
+}
+
+Scene load(const ViewOptions& options) {
+  if (options.scene_file.empty()) {
+    return parse_scene(scene_text(options.scene_name), options.scene_name);
+  }
+  return read_scene(options.scene_file);
+}
+
+std::optional<InputLog> replay_of(const ViewOptions& options) {
+  if (options.replay.empty()) return std::nullopt;
+  InputLog log = read_input_log(options.replay);
+  if (log.scene != options.scene()) {
+    throw IoError(options.replay, "", "was recorded with scene " + log.scene + "; view that one");
+  }
+  return log;
+}
+
+void write_results(LiveSimulation& simulation, const ViewOptions& options) {
+  if (!options.record.empty()) write_finished_file(options.record, text_of(simulation.log()));
+  if (options.checkpoint.empty()) return;
+  const std::vector<std::byte> bytes = simulation.checkpoint();
+  write_finished_file(options.checkpoint,
+                      {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+void run(const ViewOptions& options) {
+  check_display();
+  std::optional<InputLog> replay = replay_of(options);
+  Scene loaded = load(options);
+  std::optional<LiveSimulation> simulation;
+  try {
+    simulation.emplace(std::move(loaded), options, std::move(replay));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(options.scene(), "", error.what());
+  }
+  const ViewScene scene = view_scene_of(*simulation, options);
+  ViewWindow window(scene, *simulation, options);
+  simulation->begin();
+  window.run();
+  const std::string problem = window.failure();
+  if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
+  simulation->end();
+  write_results(*simulation, options);
+  if (!problem.empty()) throw std::runtime_error(options.scene() + ": " + problem);
+}
+
+}  // namespace
+}  // namespace tetwarp::view
+
+int main(int argument_count, char** arguments) {
+  try {
+    tetwarp::view::run(tetwarp::view::options_of({arguments + 1, arguments + argument_count}));
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tetwarp: %s\n", error.what());
+    return 1;
+  }
+}

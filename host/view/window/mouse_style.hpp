@@ -1,0 +1,44 @@
+/// @file mouse_style.hpp
+/// MouseStyle: what mouse and keys do in the window.
+#pragma once
+#include <functional>
+#include <string>
+
+#include <vtkInteractorStyleTrackballCamera.h>
+
+namespace tetwarp::view {
+
+/// What the window does for the mouse; places are pixels from the lower left.
+struct MouseActions {
+  std::function<bool(int x, int y)> grab;  ///< false: nothing is there
+  std::function<void(int x, int y)> pull;
+  std::function<void()> release;
+  /// Moves the window of volumes by pixels; false: there are none to see.
+  std::function<bool(int x, int y)> turn_window;
+  std::function<void(const std::string& key)> press;  ///< name of X11
+};
+
+/// Left drags what is under the pointer, or turns the camera; right drags the window of volumes, or
+/// zooms. Everything else is that of VTK's trackball: Shift and left or middle pan, Ctrl and left
+/// spins, the wheel zooms. Keys of VTK do nothing.
+class MouseStyle : public vtkInteractorStyleTrackballCamera {
+ public:
+  static MouseStyle* New();
+  vtkTypeMacro(MouseStyle, vtkInteractorStyleTrackballCamera);
+
+  void set_actions(MouseActions actions) { actions_ = std::move(actions); }
+
+  void OnLeftButtonDown() override;
+  void OnLeftButtonUp() override;
+  void OnRightButtonDown() override;
+  void OnRightButtonUp() override;
+  void OnMouseMove() override;
+  void OnKeyPress() override;
+  void OnChar() override {}
+
+ private:
+  MouseActions actions_;
+  bool grabs_ = false, turns_ = false;
+};
+
+}  // namespace tetwarp::view

@@ -1,0 +1,39 @@
+/// @file surface_actor.hpp
+/// SurfaceActor: a triangle mesh in the window whose points move.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <vtkActor.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+
+#include "host/view/pick.hpp"
+#include "host/view/scene_look.hpp"
+
+namespace tetwarp::view {
+
+/// Shaded smoothly, except across creases of more than 40 degrees at the start.
+class SurfaceActor {
+ public:
+  SurfaceActor(const std::vector<Point3>& points, const Triangles& triangles, const Rgb& color);
+
+  /// @param points  as many as at the start [world]
+  void move(const std::vector<Point3>& points);
+  vtkActor* actor() { return actor_; }
+
+ private:
+  void compute_normals();
+
+  std::vector<std::int32_t>
+      point_of_;         ///< [drawn points]: points at creases are drawn several times
+  Triangles triangles_;  ///< of drawn points
+  vtkNew<vtkPoints> places_;
+  vtkNew<vtkFloatArray> normals_;
+  vtkNew<vtkPolyData> mesh_;
+  vtkNew<vtkActor> actor_;
+};
+
+}  // namespace tetwarp::view

@@ -1,0 +1,269 @@
+/// @file view_window.cpp
+/// Set-up, the loop of frames, keys and the mouse.
+#include "host/view/window/view_window.hpp"
+
+#include <fmt/format.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkImageData.h>
+#include <vtkTextProperty.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <numbers>
+#include <string_view>
+#include <tetwarp/io.hpp>
+#include <thread>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp::view {
+namespace {
+constexpr unsigned long timer_interval = 15;  // [ms]
+// Ray casting is given up after so many pictures one after the other that took longer than this.
+constexpr double slow_seconds = 1.0;
+constexpr int most_slow_frames = 5;
+constexpr double window_pixels = 400;  // by which the mouse moves the window by its width
+
+constexpr const char* help_text =
+    "left: pull the body, else turn   Shift+left: pan   wheel: zoom   right: window of volumes\n"
+    "space pause   s step   r restart   c contacts   v volume, slices, surfaces   p picture   h "
+    "help   q quit";
+
+void style_text(vtkTextActor* text, int size) {
+  text->GetTextProperty()->SetFontSize(size);
+  text->GetTextProperty()->SetFontFamilyToCourier();
+  text->GetTextProperty()->SetColor(0.1, 0.1, 0.15);
+}
+}  // namespace
+
+ViewWindow::ViewWindow(const ViewScene& scene,
+                       LiveSimulation& simulation,
+                       const ViewOptions& options)
+    : scene_(scene), simulation_(simulation), options_(options) {
+  set_up_window();
+  set_up_mouse();
+}
+
+void ViewWindow::set_up_window() {
+  renderer_->SetBackground(0.93, 0.94, 0.96);
+  renderer_->SetBackground2(0.72, 0.77, 0.84);
+  renderer_->GradientBackgroundOn();
+  vtkCamera* const camera = renderer_->GetActiveCamera();
+  camera->SetPosition(scene_.camera.eye.data());
+  camera->SetFocalPoint(scene_.camera.target.data());
+  camera->SetViewUp(scene_.camera.up.data());
+  camera->SetViewAngle(scene_.camera.angle * 180 / std::numbers::pi);
+  window_->SetMultiSamples(0);
+  window_->SetSize(static_cast<int>(options_.width), static_cast<int>(options_.height));
+  window_->SetWindowName("tetwarp");
+  window_->AddRenderer(renderer_);
+  events_->SetRenderWindow(window_);
+  style_text(text_, 15);
+  style_text(help_, 13);
+  text_->GetTextProperty()->SetVerticalJustificationToTop();
+  text_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+  text_->GetPositionCoordinate()->SetValue(0.01, 0.99);
+  help_->SetInput(help_text);
+  help_->SetPosition(10, 8);
+  help_->VisibilityOff();
+  renderer_->AddViewProp(text_);
+  renderer_->AddViewProp(help_);
+}
+
+void ViewWindow::set_up_mouse() {
+  MouseActions actions;
+  actions.grab = [this](int x, int y) { return grab(x, y); };
+  actions.pull = [this](int x, int y) { pull(x, y); };
+  actions.release = [this] { simulation_.give({.kind = OrderKind::release}); };
+  actions.turn_window = [this](int x, int y) { return turn_window(x, y); };
+  actions.press = [this](const std::string& key) { press(key); };
+  style_->set_actions(std::move(actions));
+  events_->SetInteractorStyle(style_);
+}
+
+void ViewWindow::run() {
+  while (!simulation_.frames().take()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  LiveFrame& frame = simulation_.frames().front();
+  if (frame.points.empty() && frame.has_failed) return;
+  actors_.emplace(scene_, frame, renderer_);
+  volumes_.emplace(scene_, options_.preset, renderer_);
+  window_->Render();
+  const std::string_view renderer = window_->ReportCapabilities();
+  is_software_ = renderer.find("llvmpipe") != std::string_view::npos ||
+                 renderer.find("softpipe") != std::string_view::npos;
+  volumes_->set_coarse(is_software_);
+  set_look(VolumeLook::rays);
+  actors_->show(frame);
+  volumes_->show(frame);
+  events_->Initialize();
+  vtkNew<vtkCallbackCommand> tick;
+  tick->SetClientData(this);
+  tick->SetCallback([](vtkObject*, unsigned long, void* window, void*) {
+    static_cast<ViewWindow*>(window)->on_timer();
+  });
+  events_->AddObserver(vtkCommand::TimerEvent, tick);
+  events_->CreateRepeatingTimer(timer_interval);
+  draw();
+  window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
+  events_->Start();
+}
+
+void ViewWindow::on_timer() {
+  if (simulation_.frames().take()) {
+    LiveFrame& frame = simulation_.frames().front();
+    if (frame.points.size() == scene_.triangles.size()) {
+      actors_->show(frame);
+      volumes_->show(frame);
+    }
+    draw();
+  }
+  const LiveFrame& frame = simulation_.frames().front();
+  const bool is_limited = options_.steps.has_value() || !options_.replay.empty();
+  if (frame.is_last || (frame.has_failed && is_limited)) events_->TerminateApp();
+}
+
+void ViewWindow::draw() {
+  const Stopwatch watch;
+  std::erase_if(drawn_, [](const Stopwatch& since) { return since.seconds() > 1; });
+  text_->SetInput(overlay().c_str());
+  renderer_->ResetCameraClippingRange();
+  window_->Render();
+  drawn_.emplace_back();
+  fall_back(watch.seconds());
+}
+
+/// Shows slices where rays take too long.
+void ViewWindow::fall_back(double seconds) {
+  if (look_ != VolumeLook::rays || scene_.volumes.empty()) return;
+  slow_frames_ = seconds > slow_seconds ? slow_frames_ + 1 : 0;
+  if (slow_frames_ < most_slow_frames) return;
+  set_look(VolumeLook::slices);
+  note(fmt::format("slices, as rays take {:.1f} s a picture; v v: rays", seconds));
+}
+
+void ViewWindow::note(const std::string& text) {
+  note_ = text;
+}
+
+std::string ViewWindow::overlay() {
+  const LiveFrame& frame = simulation_.frames().front();
+  std::string text = fmt::format("step {}   {:.3f} s{}\n{:.0f} steps/s   {} frames/s   {} contacts",
+                                 frame.step, frame.time, frame.is_paused ? "   paused" : "",
+                                 frame.steps_per_second, drawn_.size(), frame.contacts.size());
+  if (std::isfinite(scene_.max_step_seconds)) {
+    text += fmt::format("\nbudget {:.3g} ms, over in {} of {} steps",
+                        1000 * scene_.max_step_seconds, frame.late_steps, frame.tick);
+  } else if (!frame.is_converged) {
+    text += "\nabove its tolerance";
+  }
+  if (frame.grab) text += fmt::format("\npull {:.3g} N", norm(frame.grab->force));
+  if (!frame.message.empty()) text += "\n" + frame.message;
+  if (!note_.empty()) text += "\n" + note_;
+  return text;
+}
+
+void ViewWindow::set_look(VolumeLook look) {
+  look_ = look;
+  slow_frames_ = 0;
+  volumes_->set_look(look);
+  for (const VolumeBody& volume : scene_.volumes) {
+    actors_->show_body(volume.body, look == VolumeLook::surfaces);
+  }
+  simulation_.give({.kind = look == VolumeLook::surfaces || scene_.volumes.empty()
+                                ? OrderKind::volumes_off
+                                : OrderKind::volumes_on});
+}
+
+void ViewWindow::press(const std::string& key) {
+  note_.clear();
+  if (key == "space") simulation_.give({.kind = OrderKind::pause});
+  if (key == "s") simulation_.give({.kind = OrderKind::step});
+  if (key == "r") simulation_.give({.kind = OrderKind::restart});
+  if (key == "c") actors_->show_contacts(shows_contacts_ = !shows_contacts_);
+  if (key == "v") {
+    set_look(look_ == VolumeLook::rays     ? VolumeLook::slices
+             : look_ == VolumeLook::slices ? VolumeLook::surfaces
+                                           : VolumeLook::rays);
+  }
+  if (key == "h") help_->SetVisibility(help_->GetVisibility() == 0);
+  if (key == "p") {
+    std::string path;
+    do {
+      path = fmt::format("view_{:04}.png", pictures_++);
+    } while (std::filesystem::exists(path));
+    try {
+      save_picture(path);
+      note("wrote " + path);
+    } catch (const std::exception& error) {
+      note(error.what());
+    }
+  }
+  if (key == "q" || key == "Escape") return events_->TerminateApp();
+  draw();
+}
+
+Point3 ViewWindow::world_of(double x, double y, double depth) {
+  renderer_->SetDisplayPoint(x, y, depth);
+  renderer_->DisplayToWorld();
+  const double* const world = renderer_->GetWorldPoint();
+  return {world[0] / world[3], world[1] / world[3], world[2] / world[3]};
+}
+
+bool ViewWindow::grab(int x, int y) {
+  const Point3 near = world_of(x, y, 0);
+  const auto found = pick(simulation_.frames().front().points, scene_.triangles, near,
+                          minus(world_of(x, y, 1), near));
+  if (!found) return false;
+  renderer_->SetWorldPoint(found->point[0], found->point[1], found->point[2], 1);
+  renderer_->WorldToDisplay();
+  grab_depth_ = renderer_->GetDisplayPoint()[2];
+  simulation_.give({.kind = OrderKind::grab, .body = found->body, .point = found->point});
+  return true;
+}
+
+void ViewWindow::pull(int x, int y) {
+  simulation_.give({.kind = OrderKind::pull, .point = world_of(x, y, grab_depth_)});
+}
+
+bool ViewWindow::turn_window(int x, int y) {
+  if (scene_.volumes.empty() || look_ == VolumeLook::surfaces) return false;
+  if (x == 0 && y == 0) return true;
+  width_ = std::clamp(width_ * std::exp2(x / window_pixels), 0.01, 100.0);
+  level_ -= y / window_pixels;
+  volumes_->set_window(level_, width_);
+  draw();
+  return true;
+}
+
+void ViewWindow::save_picture(const std::string& path) {
+  volumes_->set_coarse(false);
+  volumes_->show(simulation_.frames().front());
+  vtkNew<vtkWindowToImageFilter> reader;
+  reader->SetInput(window_);
+  reader->ReadFrontBufferOff();
+  reader->Update();
+  vtkImageData* const picture = reader->GetOutput();
+  int size[3];
+  picture->GetDimensions(size);
+  Image image{size[0], size[1], {}};
+  const auto row_bytes = static_cast<std::size_t>(3 * size[0]);
+  image.rgb.resize(row_bytes * static_cast<std::size_t>(size[1]));
+  for (int row = 0; row < size[1]; ++row) {  // VTK's first row is the lowest
+    std::memcpy(image.rgb.data() + row_bytes * static_cast<std::size_t>(size[1] - 1 - row),
+                picture->GetScalarPointer(0, row, 0), row_bytes);
+  }
+  volumes_->set_coarse(is_software_);
+  write_png(path, image);
+}
+
+std::string ViewWindow::failure() {
+  const LiveFrame& frame = simulation_.frames().front();
+  return frame.has_failed ? frame.message : std::string();
+}
+
+}  // namespace tetwarp::view

@@ -1,0 +1,73 @@
+/// @file view_window.hpp
+/// ViewWindow: the window of a live simulation.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+
+#include "host/base/stopwatch.hpp"
+#include "host/view/live_simulation.hpp"
+#include "host/view/view_scene.hpp"
+#include "host/view/window/mouse_style.hpp"
+#include "host/view/window/scene_actors.hpp"
+#include "host/view/window/volume_actors.hpp"
+
+namespace tetwarp::view {
+
+/// All calls are from the main thread, the only one that uses VTK.
+class ViewWindow {
+ public:
+  /// @param scene, simulation, options  kept by the caller
+  ViewWindow(const ViewScene& scene, LiveSimulation& simulation, const ViewOptions& options);
+
+  /// Draws until the user or the last step ends it.
+  void run();
+  /// Whether anything was drawn.
+  bool has_picture() const { return volumes_.has_value(); }
+  /// Writes what is shown. @pre has_picture() @throws IoError
+  void save_picture(const std::string& path);
+  /// What ended the simulation, or empty.
+  std::string failure();
+
+ private:
+  void set_up_window();
+  void set_up_mouse();
+  void on_timer();
+  void draw();
+  void press(const std::string& key);
+  bool grab(int x, int y);
+  void pull(int x, int y);
+  bool turn_window(int x, int y);
+  void set_look(VolumeLook look);
+  void fall_back(double seconds);
+  void note(const std::string& text);
+  std::string overlay();
+  Point3 world_of(double x, double y, double depth);
+
+  const ViewScene& scene_;
+  LiveSimulation& simulation_;
+  const ViewOptions& options_;
+  vtkNew<vtkRenderer> renderer_;
+  vtkNew<vtkRenderWindow> window_;
+  vtkNew<vtkRenderWindowInteractor> events_;
+  vtkNew<MouseStyle> style_;
+  vtkNew<vtkTextActor> text_, help_;
+  std::optional<SceneActors> actors_;
+  std::optional<VolumeActors> volumes_;
+  VolumeLook look_ = VolumeLook::rays;
+  bool shows_contacts_ = true, is_software_ = false;
+  double level_ = 0, width_ = 1;  ///< of the window of volumes
+  double grab_depth_ = 0;         ///< of the point that is held, as on the display
+  int slow_frames_ = 0;           ///< drawn one after the other
+  int pictures_ = 0;
+  std::string note_;
+  std::vector<Stopwatch> drawn_;  ///< since each picture of the last second
+};
+
+}  // namespace tetwarp::view

@@ -1,0 +1,110 @@
+/// @file volume_actors.cpp
+/// Images, rays and slices of warped volumes.
+#include "host/view/window/volume_actors.hpp"
+
+#include <vtkImageProperty.h>
+#include <vtkPointData.h>
+#include <vtkVolumeProperty.h>
+
+#include <array>
+
+namespace tetwarp::view {
+namespace {
+// Lengths of a ray between samples [voxels], and pixels between rays.
+constexpr double fine_step = 1, coarse_step = 4, coarse_pixels = 3;
+constexpr int gray_levels = 256, clear_levels = 8;  // of slices; the darkest are clear
+}  // namespace
+
+VolumeActors::VolumeActors(const ViewScene& scene,
+                           const std::string& preset,
+                           vtkRenderer* renderer) {
+  for (const VolumeBody& body : scene.volumes) {
+    Drawn& drawn = drawn_.emplace_back(VolumeColors(preset, body.low, body.high));
+    drawn.image->GetPointData()->SetScalars(drawn.samples);
+    drawn.mapper->SetInputData(drawn.image);
+    drawn.mapper->AutoAdjustSampleDistancesOff();
+    drawn.rays->SetMapper(drawn.mapper);
+    vtkVolumeProperty* const look = drawn.rays->GetProperty();
+    look->SetColor(drawn.color);
+    look->SetScalarOpacity(drawn.opacity);
+    look->SetInterpolationTypeToLinear();
+    look->ShadeOff();
+    drawn.gray->SetNumberOfTableValues(gray_levels);
+    for (int level = 0; level < gray_levels; ++level) {
+      const double share = static_cast<double>(level) / (gray_levels - 1);
+      drawn.gray->SetTableValue(level, share, share, share, level < clear_levels ? 0 : 1);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      drawn.slice_mappers[axis]->SetInputData(drawn.image);
+      drawn.slice_mappers[axis]->SetOrientation(axis);
+      drawn.slices[axis]->SetMapper(drawn.slice_mappers[axis]);
+      drawn.slices[axis]->GetProperty()->SetLookupTable(drawn.gray);
+      drawn.slices[axis]->GetProperty()->UseLookupTableScalarRangeOn();
+      drawn.slices[axis]->VisibilityOff();
+      renderer->AddViewProp(drawn.slices[axis]);
+    }
+    drawn.rays->VisibilityOff();
+    renderer->AddVolume(drawn.rays);
+    color(drawn);
+  }
+}
+
+void VolumeActors::color(Drawn& drawn) {
+  drawn.color->RemoveAllPoints();
+  drawn.opacity->RemoveAllPoints();
+  for (const ColorPoint& point : drawn.colors.points()) {
+    const auto& [red, green, blue] = point.color;
+    drawn.color->AddRGBPoint(point.sample, red, green, blue);
+    drawn.opacity->AddPoint(point.sample, point.opacity);
+  }
+  const std::array<double, 2> gray = drawn.colors.gray();
+  drawn.gray->SetTableRange(gray.data());
+}
+
+void VolumeActors::show(LiveFrame& frame) {
+  for (std::size_t v = 0; v < drawn_.size(); ++v) {
+    Drawn& drawn = drawn_[v];
+    drawn.has_samples = v < frame.volumes.size();
+    if (drawn.has_samples) {
+      VolumeFrame& volume = frame.volumes[v];
+      const Grid& grid = volume.grid;
+      drawn.image->SetDimensions(static_cast<int>(grid.dims[0]), static_cast<int>(grid.dims[1]),
+                                 static_cast<int>(grid.dims[2]));
+      drawn.image->SetOrigin(grid.origin.data());
+      drawn.image->SetSpacing(grid.spacing.data());
+      drawn.samples->SetArray(volume.samples.data(), static_cast<vtkIdType>(volume.samples.size()),
+                              1);
+      drawn.samples->Modified();
+      drawn.image->Modified();
+      drawn.mapper->SetSampleDistance(
+          static_cast<float>((is_coarse_ ? coarse_step : fine_step) * grid.spacing[0]));
+      drawn.mapper->SetImageSampleDistance(static_cast<float>(is_coarse_ ? coarse_pixels : 1));
+      drawn.rays->GetProperty()->SetScalarOpacityUnitDistance(grid.spacing[0]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        drawn.slice_mappers[axis]->SetSliceNumber(static_cast<int>(grid.dims[axis] / 2));
+      }
+    }
+    show_look(drawn);
+  }
+}
+
+void VolumeActors::set_look(VolumeLook look) {
+  look_ = look;
+  for (Drawn& drawn : drawn_) show_look(drawn);
+}
+
+void VolumeActors::show_look(Drawn& drawn) {
+  drawn.rays->SetVisibility(drawn.has_samples && look_ == VolumeLook::rays);
+  for (auto& slice : drawn.slices) {
+    slice->SetVisibility(drawn.has_samples && look_ == VolumeLook::slices);
+  }
+}
+
+void VolumeActors::set_window(double level, double width) {
+  for (Drawn& drawn : drawn_) {
+    drawn.colors.set_window(level, width);
+    color(drawn);
+  }
+}
+
+}  // namespace tetwarp::view

@@ -1,0 +1,121 @@
+/// @file numbered_files.cpp
+/// Patterns, and sizes of files that others list.
+#include "io/files/numbered_files.hpp"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <system_error>
+#include <tetwarp/error.hpp>
+
+#include "io/files/extension.hpp"
+
+namespace tetwarp {
+namespace fs = std::filesystem;
+
+namespace {
+bool is_digit(char letter) {
+  return std::isdigit(static_cast<unsigned char>(letter)) != 0;
+}
+
+/// The digits from `at` on, without leading zeros; moves `at` behind them.
+std::string number_at(const std::string& text, std::size_t& at) {
+  while (at < text.size() && text[at] == '0') ++at;
+  const std::size_t first = at;
+  while (at < text.size() && is_digit(text[at])) ++at;
+  return text.substr(first, at - first);
+}
+
+/// Compares numbers by their value, all else by the alphabet.
+bool is_before(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string x = number_at(a, i), y = number_at(b, j);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  const std::size_t left_a = a.size() - i, left_b = b.size() - j;
+  return left_a != left_b ? left_a < left_b : a < b;
+}
+
+double bytes_of_file(const fs::path& path) {
+  std::error_code error;
+  const auto bytes = static_cast<double>(fs::file_size(path, error));
+  return error ? 0 : bytes;
+}
+
+bool is_list(const std::string& path) {
+  return has_extension(path, ".pvd") || has_extension(path, ".vtm") ||
+         has_extension(path, ".series");
+}
+
+/// Adds a file and those that it lists. @param depth  of lists that lists may name
+void add_files(const std::string& path, int depth, std::vector<std::string>& files) {
+  files.push_back(path);
+  if (!is_list(path) || depth == 0) return;
+  std::ifstream in(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  static const std::regex entry("(file\\s*=|\"name\"\\s*:)\\s*[\"']([^\"']*)[\"']");
+  for (std::sregex_iterator at(text.begin(), text.end(), entry), end; at != end; ++at) {
+    const fs::path named = fs::path(path).parent_path() / (*at)[2].str();
+    std::error_code error;
+    if (fs::is_regular_file(named, error)) add_files(named.string(), depth - 1, files);
+  }
+}
+}  // namespace
+
+bool is_pattern(const std::string& path) {
+  std::error_code error;
+  return fs::path(path).filename().string().find('*') != std::string::npos &&
+         !fs::exists(path, error);
+}
+
+std::vector<std::string> numbered_files(const std::string& pattern) {
+  const fs::path parent = fs::path(pattern).parent_path();
+  const std::string names = fs::path(pattern).filename().string();
+  std::vector<std::string> found;
+  std::error_code error;
+  for (fs::directory_iterator at(parent.empty() ? "." : parent, error), end; !error && at != end;
+       at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (fnmatch(names.c_str(), name.c_str(), FNM_NOESCAPE | FNM_PERIOD) == 0) found.push_back(name);
+  }
+  if (found.empty()) throw IoError(pattern, "", "no file has such a name");
+  std::ranges::sort(found, is_before);
+  for (std::string& name : found) name = (parent / name).string();
+  return found;
+}
+
+bool is_exodus_name(const std::string& path) {
+  return has_extension(path, ".e") || has_extension(path, ".exo") || has_extension(path, ".ex2");
+}
+
+std::vector<std::string> files_of(const std::string& path) {
+  std::vector<std::string> files;
+  constexpr int depth = 2;
+  if (!is_pattern(path)) {
+    add_files(path, depth, files);
+    return files;
+  }
+  for (const std::string& file : numbered_files(path)) add_files(file, depth, files);
+  return files;
+}
+
+double bytes_of_files(const std::string& path) {
+  double bytes = 0;
+  for (const std::string& file : files_of(path)) bytes += bytes_of_file(file);
+  return bytes;
+}
+
+}  // namespace tetwarp

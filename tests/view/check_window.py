@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""Watches and pulls scenes in a real window: Xvfb with events of xdotool.
+
+    check_window.py COMMAND    exit status 77 where Xvfb or xdotool is missing
+"""
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+from pathlib import Path
+
+SECONDS = 100  # that one call of the command may take
+
+SCENE = """{"tetwarp_scene": 1, "time_step": 0.01, "duration": 1,
+  "bodies": [{"name": "block", "kind": "fem", "shape": {"type": "box", "half": [0.1, 0.1, 0.2]},
+              "lattice": {"cells": [2, 2, 3]},
+              "material": {"E": 2e4, "nu": 0.3, "density": 1000},
+              "fixed": {"half_space": [0, 0, -1, 0.19]}}]}
+"""
+
+
+def fail(text):
+    print(text)
+    sys.exit(1)
+
+
+def pixels_of(path):
+    """Width, and rows of (red, green, blue), of a PNG without interlacing."""
+    data, chunks, place = path.read_bytes(), {}, 8
+    while place < len(data):
+        size, kind = struct.unpack(">I4s", data[place:place + 8])
+        chunks[kind] = chunks.get(kind, b"") + data[place + 8:place + 8 + size]
+        place += size + 12
+    width, height = struct.unpack(">II", chunks[b"IHDR"][:8])
+    raw, stride, rows, before = zlib.decompress(chunks[b"IDAT"]), 3 * width, [], None
+    for y in range(height):
+        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        before = before or bytearray(stride)
+        for x in range(stride):
+            left = line[x - 3] if x >= 3 else 0
+            corner = before[x - 3] if x >= 3 else 0
+            above = before[x]
+            if kind == 1:
+                line[x] = (line[x] + left) & 255
+            elif kind == 2:
+                line[x] = (line[x] + above) & 255
+            elif kind == 3:
+                line[x] = (line[x] + (left + above) // 2) & 255
+            elif kind == 4:
+                guess = left + above - corner
+                near = min((abs(guess - v), n) for n, v in enumerate((left, above, corner)))[1]
+                line[x] = (line[x] + (left, above, corner)[near]) & 255
+        rows.append([tuple(line[3 * x:3 * x + 3]) for x in range(width)])
+        before = line
+    return width, rows
+
+
+def orange_pixels(path):
+    """Pixels of the first body's color, in any light."""
+    _, rows = pixels_of(path)
+    return [(x, y) for y, row in enumerate(rows) for x, (r, g, b) in enumerate(row)
+            if r > 60 and r > 1.5 * g and g > 1.4 * b]
+
+
+class Display:
+    """A server without a screen, gone at the end of the with block."""
+
+    def __enter__(self):
+        read, write = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24", "-noreset",
+             "-nolisten", "tcp"],
+            pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as numbers:
+            number = numbers.readline().strip()
+        if not number:
+            fail("Xvfb did not start")
+        return os.environ | {"DISPLAY": ":" + number}
+
+    def __exit__(self, *_):
+        self.server.terminate()
+        self.server.wait()
+
+
+def view(command, words, environment, folder):
+    return subprocess.run([command, "view", *words], env=environment, cwd=folder, timeout=SECONDS,
+                          capture_output=True, text=True)
+
+
+def check_without_display(command, folder):
+    environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+    for shown in ({}, {"DISPLAY": ":987"}):
+        done = view(command, ["scene.json"], environment | shown, folder)
+        if done.returncode != 1 or done.stderr.count("\n") != 1 or "display" not in done.stderr:
+            fail(f"without a display: status {done.returncode}, {done.stderr!r}")
+
+
+def check_picture(command, environment, folder):
+    done = view(command, ["scene.json", "--fast", "--steps", "3", "--size", "320,240",
+                          "--screenshot", "block.png"], environment, folder)
+    if done.returncode != 0:
+        fail(f"picture: status {done.returncode}: {done.stderr}")
+    body = orange_pixels(folder / "block.png")
+    if len(body) < 2000:
+        fail(f"picture: {len(body)} pixels show the body")
+    return body
+
+
+def check_pull(command, environment, folder, body):
+    """A drag with single steps; its record gives the same bits."""
+    x = sum(place[0] for place in body) // len(body)
+    y = min(place[1] for place in body if place[0] == x) + 12
+    words = ["scene.json", "--paused", "--size", "320,240", "--record", "input.txt",
+             "--checkpoint", "first.bin"]
+    with subprocess.Popen([command, "view", *words], env=environment, cwd=folder,
+                          stderr=subprocess.PIPE, text=True) as window:
+        try:
+            subprocess.run(
+                f"""xdotool search --sync --onlyvisible --name tetwarp:.scene.json windowmove %1 0 0
+                    windowfocus --sync %1 mousemove {x} {y} mousedown 1
+                    mousemove {x + 40} {y - 10} key s mousemove {x + 60} {y - 20}
+                    key s key s mouseup 1 key s key s key q""".split(),
+                env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
+            status = window.wait(SECONDS)
+        finally:
+            window.kill()
+        if status != 0:
+            fail(f"pull: status {status}: {window.stderr.read()}")
+    text = (folder / "input.txt").read_text(encoding="ascii")
+    for word in (" grab block ", " move ", " release\n", "5 end\n"):
+        if word not in text:
+            fail(f"pull: no '{word.strip()}' in\n{text}")
+    done = view(command, ["scene.json", "--replay", "input.txt", "--size", "320,240",
+                          "--checkpoint", "second.bin"], environment, folder)
+    if done.returncode != 0:
+        fail(f"replay: status {done.returncode}: {done.stderr}")
+    if (folder / "first.bin").read_bytes() != (folder / "second.bin").read_bytes():
+        fail("replay: another state than the recorded one")
+
+
+def main():
+    command = str(Path(sys.argv[1]).resolve())
+    with tempfile.TemporaryDirectory(prefix="tetwarp-window-") as name:
+        folder = Path(name)
+        (folder / "scene.json").write_text(SCENE, encoding="ascii")
+        check_without_display(command, folder)
+        missing = [tool for tool in ("Xvfb", "xdotool") if not shutil.which(tool)]
+        if missing:
+            print(f"skipped: {' and '.join(missing)} not found; apt install xvfb xdotool")
+            sys.exit(77)
+        with Display() as environment:
+            body = check_picture(command, environment, folder)
+            check_pull(command, environment, folder, body)
+
+
+if __name__ == "__main__":
+    main()

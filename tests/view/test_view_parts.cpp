@@ -1,0 +1,271 @@
+/// @file test_view_parts.cpp
+/// Live windows without a window: hand-over between threads, input and its repetition, picking.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/error.hpp>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "host/view/input_log.hpp"
+#include "host/view/live_simulation.hpp"
+#include "host/view/live_volumes.hpp"
+#include "host/view/pick.hpp"
+#include "host/view/scene_look.hpp"
+#include "host/view/triple_buffer.hpp"
+#include "host/view/view_options.hpp"
+#include "host/view/volume_colors.hpp"
+#include "tests/support/run_command.hpp"
+
+namespace tetwarp::test {
+namespace {
+using namespace view;
+
+TEST(TripleBuffer, GivesTheNewestValueOnce) {
+  TripleBuffer<int> buffer;
+  EXPECT_FALSE(buffer.take());
+  for (const int value : {1, 2, 3}) {
+    buffer.back() = value;
+    buffer.publish();
+  }
+  EXPECT_TRUE(buffer.is_waiting());
+  EXPECT_TRUE(buffer.take());
+  EXPECT_EQ(buffer.front(), 3);
+  EXPECT_FALSE(buffer.take());
+  EXPECT_EQ(buffer.front(), 3);
+}
+
+/// Both threads go on all the time: values that the reader sees are whole and never older.
+TEST(TripleBuffer, NeverGivesAValueThatIsBeingWritten) {
+  constexpr std::int64_t last = 20000;
+  TripleBuffer<std::vector<std::int64_t>> buffer;
+  std::thread writer([&] {
+    for (std::int64_t value = 1; value <= last; ++value) {
+      buffer.back().assign(16, value);
+      buffer.publish();
+    }
+  });
+  std::int64_t before = 0;
+  while (before < last) {
+    if (!buffer.take()) continue;
+    const std::vector<std::int64_t>& values = buffer.front();
+    EXPECT_EQ(values, std::vector<std::int64_t>(16, values[0]));
+    EXPECT_GT(values[0], before);
+    before = values[0];
+  }
+  writer.join();
+}
+
+TEST(ViewOptions, AreTheSameAfterTheirWords) {
+  ViewOptions options;
+  EXPECT_TRUE(words_of(options).empty());
+  options.scene_file = "a=b c.json";
+  options.threads = 3;
+  options.max_step_seconds = 0.1;
+  options.paused = true;
+  options.steps = 0;
+  options.camera = {{0.1, -2, 1e-30, 4, 5, 1.0 / 3}};
+  options.grab_radius = 0.7;
+  options.record = "input.txt";
+  EXPECT_EQ(options_of(words_of(options)), options);
+  for (const std::string word : {"thread=3", "threads", "threads=x", "paused=2", "camera=1,2"}) {
+    EXPECT_THROW(options_of({word}), std::invalid_argument) << word;
+  }
+}
+
+InputLog some_input() {
+  InputLog log;
+  log.scene = "a scene.json";
+  log.events = {{.tick = 3,
+                 .kind = InputKind::grab,
+                 .handle = {.body = "head",
+                            .center = {0.1, -1e-17, 1.0 / 3},
+                            .radius = 0.01,
+                            .stiffness = 1e300,
+                            .damping = 0.7}},
+                {.tick = 3, .kind = InputKind::move, .displacement = {0.2, 0, -1}},
+                {.tick = 9, .kind = InputKind::release},
+                {.tick = 12, .kind = InputKind::restart}};
+  log.ticks = 20;
+  return log;
+}
+
+TEST(InputLog, KeepsAllBits) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "input.txt";
+  std::ofstream(path) << text_of(some_input());
+  const InputLog log = read_input_log(path);
+  EXPECT_EQ(log.scene, "a scene.json");
+  EXPECT_EQ(log.events, some_input().events);
+  EXPECT_EQ(log.ticks, 20);
+}
+
+TEST(InputLog, NamesTheLineThatIsWrong) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "input.txt";
+  const auto refuses = [&](const std::string& text, const std::string& expected) {
+    std::ofstream(path) << text;
+    try {
+      read_input_log(path);
+      ADD_FAILURE() << text;
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+  };
+  const std::string head = "tetwarp input 1\nchain\n";
+  refuses("", "is not a file that tetwarp view --record wrote");
+  refuses(head, "is incomplete");
+  refuses(head + "0 push\n", "line 3 'push' is not grab");
+  refuses(head + "0 move 1 2\n", "line 3 ends too early");
+  refuses(head + "4 release\n3 release\n", "line 4 its step is before");
+  refuses(head + "0 move 1 2 nan\n", "'nan' is not a number");
+  refuses(head + "0 release 1\n", "one word too many");
+}
+
+TEST(Pick, FindsTheNearestTriangleFromEitherSide) {
+  const std::vector<std::vector<Point3>> points{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                                {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+  const std::vector<Triangles> triangles{{{0, 1, 2}}, {{0, 1, 2}}};
+  const auto from_above = pick(points, triangles, {0.2, 0.3, 5}, {0, 0, -2});
+  ASSERT_TRUE(from_above);
+  EXPECT_EQ(from_above->body, 1u);
+  EXPECT_EQ(from_above->point, (Point3{0.2, 0.3, 1}));
+  EXPECT_EQ(from_above->distance, 2);
+  const auto from_below = pick(points, triangles, {0.2, 0.3, -5}, {0, 0, 1});
+  ASSERT_TRUE(from_below);
+  EXPECT_EQ(from_below->body, 0u);
+  EXPECT_FALSE(pick(points, triangles, {0.8, 0.8, 5}, {0, 0, -1}));
+  EXPECT_FALSE(pick(points, triangles, {0.2, 0.3, 5}, {0, 0, 1}));  // behind
+  EXPECT_FALSE(pick(points, triangles, {0.2, 0.3, 5}, {1, 0, 0}));  // along the triangles
+}
+
+TEST(GridAround, HoldsThePointsAndTheLimit) {
+  const std::vector<Point3> points{{-1, 0, 2}, {3, 0.5, 2.25}};
+  for (const std::int64_t most : {100'000, 1'000'000}) {
+    const Grid grid = grid_around(points, 1e-3, most);
+    EXPECT_LT(static_cast<double>(grid.voxel_count()), 1.3 * static_cast<double>(most));
+    for (std::size_t d = 0; d < 3; ++d) {
+      EXPECT_LT(grid.origin[d], points[0][d]);
+      EXPECT_GT(grid.origin[d] + grid.spacing[d] * static_cast<double>(grid.dims[d] - 1),
+                points[1][d]);
+    }
+  }
+  EXPECT_EQ(grid_around(points, 0.5, 1000000).spacing, (Point3{0.5, 0.5, 0.5}));
+  EXPECT_GE(grid_around({{1, 1, 1}}, 0.1, 1000).voxel_count(), 1);  // of one point
+}
+
+TEST(SceneLook, CameraIsUprightUnlessItLooksDown) {
+  EXPECT_EQ(camera_at({0, -1, 1, 0, 0, 0}).up, (Point3{0, 0, 1}));
+  EXPECT_EQ(camera_at({0, 0, 5, 0, 0, 1}).up, (Point3{0, 1, 0}));
+  EXPECT_EQ(camera_at({1, 2, 3, 4, 5, 6}).eye, (Point3{1, 2, 3}));
+  EXPECT_EQ(camera_at({1, 2, 3, 4, 5, 6}).target, (Point3{4, 5, 6}));
+}
+
+TEST(VolumeColors, FollowHounsfieldUnitsAndTheWindow) {
+  VolumeColors tomography("ct", -1000, 1000);
+  const auto value = [](double sample) { return -1000 + 2000 * sample / largest_sample; };
+  EXPECT_NEAR(value(tomography.points().front().sample), -1000, 1e-9);
+  EXPECT_NEAR(value(tomography.points().back().sample), 1000, 1e-9);
+  EXPECT_EQ(tomography.points().front().opacity, 0);
+  tomography.set_window(0.25, 0.5);
+  EXPECT_NEAR(value(tomography.gray()[0]), 0, 1e-9);
+  EXPECT_NEAR(value(tomography.gray()[1]), 1000, 1e-9);
+  const VolumeColors other("mr", 0, 1);
+  EXPECT_EQ(other.gray()[1], largest_sample);
+}
+
+/// A block of tissue that stands fast, with a volume, and a ball on it.
+Scene live_scene() {
+  Scene scene;
+  scene.time_step = 0.01;
+  Grid grid{.dims = {8, 8, 12}, .origin = {-0.07, -0.07, -0.11}, .spacing = {0.02, 0.02, 0.02}};
+  Volume volume = make_volume(grid, PixelType::float32);
+  for (float& sample : volume.samples<float>()) sample = 1;
+  Body block;
+  block.name = "block";
+  block.geometry = ImageGeometry{std::move(volume), 0.5};
+  block.lattice = Lattice{.cells = {{2, 2, 3}}};
+  block.material = {1e4, 0.3, 1000};
+  block.fixed = {HalfSpaceSelection{{0, 0, -1}, 0.1}};
+  Body ball;
+  ball.name = "ball";
+  ball.kind = BodyKind::rigid;
+  ball.geometry = Shape{EllipsoidShape{{0.03, 0.03, 0.03}}};
+  ball.pose.position = {0, 0, 0.17};
+  scene.bodies = {block, ball};
+  return scene;
+}
+
+/// Waits for a frame of at least so many steps.
+LiveFrame& frame_at(LiveSimulation& simulation, std::int64_t tick) {
+  while (!simulation.frames().take() || simulation.frames().front().tick < tick) {
+    std::this_thread::yield();
+  }
+  return simulation.frames().front();
+}
+
+TEST(LiveSimulation, StepsOnOrderAndPullsWhatIsGrabbed) {
+  ViewOptions options;
+  options.paused = true;
+  LiveSimulation simulation(live_scene(), options, {});
+  simulation.begin();
+  const LiveFrame first = frame_at(simulation, 0);
+  EXPECT_TRUE(first.is_paused);
+  ASSERT_EQ(first.volumes.size(), 1u);
+  EXPECT_EQ(first.points.size(), 2u);
+  Point3 top = first.points[0][0];
+  for (const Point3& x : first.points[0]) top = x[2] > top[2] ? x : top;
+  simulation.give({.kind = OrderKind::grab, .body = 0, .point = top});
+  simulation.give({.kind = OrderKind::pull, .point = {top[0], top[1], top[2] + 0.1}});
+  simulation.give({.kind = OrderKind::step});
+  simulation.give({.kind = OrderKind::step});
+  const LiveFrame pulled = frame_at(simulation, 2);
+  EXPECT_EQ(pulled.step, 2);
+  ASSERT_TRUE(pulled.grab);
+  EXPECT_GT(pulled.grab->force[2], 0);
+  EXPECT_EQ(pulled.message, "");
+  simulation.give({.kind = OrderKind::release});
+  simulation.give({.kind = OrderKind::restart});
+  simulation.give({.kind = OrderKind::step});
+  const LiveFrame again = frame_at(simulation, 3);
+  EXPECT_EQ(again.step, 1);
+  EXPECT_FALSE(again.grab);
+  simulation.end();
+  EXPECT_EQ(simulation.log().events.size(), 4u);
+}
+
+TEST(LiveSimulation, RepeatsItsInputBitForBit) {
+  ViewOptions options;
+  options.paused = true;
+  LiveSimulation recorded(live_scene(), options, {});
+  recorded.begin();
+  const LiveFrame first = frame_at(recorded, 0);
+  recorded.give({.kind = OrderKind::step});
+  frame_at(recorded, 1);
+  recorded.give({.kind = OrderKind::grab, .body = 1, .point = {0, 0, 0.2}});
+  for (int n = 1; n <= 8; ++n) {
+    recorded.give({.kind = OrderKind::pull, .point = {0.01 * n, 0, 0.2}});
+    recorded.give({.kind = OrderKind::step});
+    frame_at(recorded, 1 + n);
+  }
+  recorded.give({.kind = OrderKind::release});
+  recorded.give({.kind = OrderKind::step});
+  recorded.end();  // after the step
+  EXPECT_EQ(recorded.log().ticks, 10);
+
+  options.paused = false;
+  LiveSimulation repeated(live_scene(), options, recorded.log());
+  repeated.begin();
+  while (!frame_at(repeated, 0).is_last) {
+  }
+  repeated.end();
+  EXPECT_EQ(repeated.log().events, recorded.log().events);
+  EXPECT_EQ(repeated.checkpoint(), recorded.checkpoint());
+}
+
+}  // namespace
+}  // namespace tetwarp::test
