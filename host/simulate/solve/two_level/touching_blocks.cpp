@@ -123,7 +123,8 @@ void TouchingBlocks::set_response(const DiagonalInverse<double>& inverse,
     const double* const j = jacobian(other);
     for (std::int32_t e = 0; e < 9; ++e) {
       const double *const line = m + e % 3 * size, *const along = j + e / 3 * 3;
-      response[e] += own.relaxation * (line[0] * along[0] + line[1] * along[1] + line[2] * along[2]);
+      response[e] +=
+          own.relaxation * (line[0] * along[0] + line[1] * along[1] + line[2] * along[2]);
     }
   });
 }

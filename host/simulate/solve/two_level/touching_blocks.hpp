@@ -24,9 +24,9 @@ struct TouchingSums {
 /// after these the velocities of the nodes of elastic bodies that contacts touch, in the frames of
 /// their bodies at rest (ElasticBody::first).
 ///
-/// The velocity of a contact is u = J y + w, a sum over its blocks. Impulses r of a contact change y
-/// by M^-1 J^T r: rows by omega D^-1 J^T r, the touched nodes of an elastic body by A_0^-1 (J R)^T
-/// r, where R turns from the body at rest to the world.
+/// The velocity of a contact is u = J y + w, a sum over its blocks. Impulses r of a contact change
+/// y by M^-1 J^T r: rows by omega D^-1 J^T r, the touched nodes of an elastic body by A_0^-1 (J
+/// R)^T r, where R turns from the body at rest to the world.
 class TouchingBlocks {
  public:
   explicit TouchingBlocks(int threads) : threads_(threads) {}
