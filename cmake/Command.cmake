@@ -8,7 +8,8 @@ tetwarp_sources(tetwarp_command host/cli/contact
   cmd_contact.cpp contact_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/job
   array_checks.cpp fingerprint.cpp job_plan.cpp memory_plan.cpp output_files.cpp output_grid.cpp
-  output_writer.cpp source_scan.cpp step_selection.cpp warnings.cpp warp_arguments.cpp)
+  output_writer.cpp provenance.cpp source_scan.cpp step_selection.cpp warnings.cpp
+  warp_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/simulate
   cmd_simulate.cpp simulate_arguments.cpp simulate_bodies.cpp
   simulate_contacts.cpp simulate_frames.cpp simulate_pictures.cpp simulate_report.cpp
@@ -20,7 +21,8 @@ tetwarp_sources(tetwarp_command host/cli/tools
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
-  batch.cpp batch_file.cpp block_warper.cpp cmd_warp.cpp job_share.cpp part_exchange.cpp
+  batch.cpp batch_file.cpp batch_list.cpp block_warper.cpp cmd_warp.cpp job_process.cpp
+  job_share.cpp part_exchange.cpp
   part_queue.cpp report_exchange.cpp series_in_parts.cpp step_writer.cpp transform_job.cpp
   volume_blocks.cpp
   volume_run.cpp volume_sources.cpp volume_steps.cpp volume_task.cpp warp_job.cpp)

@@ -2,7 +2,7 @@
 # what is compiled. In one of them the command runs on the emulated device.
 add_executable(tetwarp_emulated_command $<TARGET_OBJECTS:tetwarp_command>)
 target_link_libraries(tetwarp_emulated_command PRIVATE
-  tetwarp_io tetwarp_openmp CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json)
+  tetwarp_view_parts tetwarp_io tetwarp_openmp CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json)
 if(TETWARP_HAS_MPI)
   target_link_libraries(tetwarp_emulated_command PRIVATE MPI::MPI_CXX)
 endif()

@@ -6,6 +6,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_arrays.cpp
     tests/io/test_io_axes.cpp
     tests/io/test_io_blocks.cpp
+    tests/io/test_io_images.cpp
     tests/io/test_io_vtkhdf_volume.cpp
     tests/io/test_io_vtkhdf_mesh.cpp
     tests/io/test_io_nifti.cpp

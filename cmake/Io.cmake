@@ -21,7 +21,8 @@ tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_output.cpp h5_read.cpp h5_rows.cpp h5_write.cpp
   value_names.cpp)
 tetwarp_sources(tetwarp_io io/image
-  image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp nrrd_header.cpp)
+  image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp mgh_header.cpp
+  nrrd_header.cpp)
 tetwarp_sources(tetwarp_io io/import
   child_process.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp)
 tetwarp_sources(tetwarp_io io/nifti
@@ -35,7 +36,7 @@ tetwarp_sources(tetwarp_io io/scene
   scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_files.cpp
   scene_geometry.cpp scene_json.cpp scene_motion.cpp)
 tetwarp_sources(tetwarp_io io/transforms
-  field_file.cpp itk_transform.cpp transform_file.cpp)
+  field_file.cpp fsl_field.cpp itk_transform.cpp itk_transform_files.cpp transform_file.cpp)
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf

@@ -10,8 +10,8 @@ tetwarp_sources(tetwarp host/base
   backend.cpp error.cpp host_tasks.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp
   repeated_cells.cpp report.cpp volume.cpp)
 tetwarp_sources(tetwarp host/collide
-  body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp
-  self_clearance.cpp touch_areas.cpp)
+  body_partners.cpp certify.cpp collide_items.cpp exact_integer.cpp grid_plan.cpp known_hits.cpp
+  moving_triangles.cpp near_planes.cpp self_clearance.cpp touch_areas.cpp)
 tetwarp_sources(tetwarp host/collide/cpu
   detector_cpu.cpp)
 tetwarp_sources(tetwarp host/collide/cuda
@@ -102,8 +102,8 @@ tetwarp_sources(tetwarp host/warp
   backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp map_points.cpp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
-  backend_cpu.cpp map_points_cpu.cpp operator_taps.cpp resample.cpp voxel_places.cpp
-  warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
+  backend_cpu.cpp map_points_cpu.cpp operator_taps.cpp resample.cpp transform_links.cpp
+  voxel_places.cpp warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
   row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
   backend_${tetwarp_cuda} device_start_${tetwarp_cuda} map_points_${tetwarp_cuda})

@@ -59,7 +59,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/collide/test_pair_ccd.cpp
     tests/collide/test_interval_ccd.cpp
     tests/collide/test_pair_distance.cpp
-    tests/collide/test_triangle_intersection.cpp)
+    tests/collide/test_triangle_intersection.cpp
+    tests/collide/test_certify.cpp)
   set(tetwarp_detector_tests    # broad phase, detector, emulated cuda
     tests/collide/brute_force_pairs.cpp
     tests/collide/collide_scenes.cpp

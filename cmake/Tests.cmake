@@ -327,7 +327,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks camera choices contact contact_adhesion contact_arrays
+set(tetwarp_public_headers backend blocks camera certify choices contact contact_adhesion contact_arrays
   contact_problem contact_tracker error make map_points mesh names page_lock report resample scene
   scene_parts simulate tetwarp version volume warp warp_operator)
 if(TETWARP_IO)

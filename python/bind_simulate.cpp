@@ -277,6 +277,14 @@ void bind_simulate(nb::module_& module) {
           },
           nb::arg("index"))
       .def(
+          "add_handle",
+          [](SceneSimulator& self, const std::string& name, const std::string& body,
+             const Point3& center, double radius, double stiffness, double damping) {
+            self.idle().add_handle({name, body, center, radius, stiffness, damping});
+          },
+          nb::arg("name"), nb::arg("body"), nb::arg("center"), nb::arg("radius"),
+          nb::arg("stiffness"), nb::arg("damping"))
+      .def(
           "move_handle",
           [](SceneSimulator& self, const std::string& name, const Point3& by) {
             self.idle().move_handle(name, by);

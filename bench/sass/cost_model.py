@@ -26,16 +26,17 @@ ROOT = Path(__file__).resolve().parents[2]
 MULTIPROCESSORS, CYCLES = 132, 1980.0  # of an H200; cycles of a microsecond
 # Fitted by --fit to what was measured of the workloads FITTED.
 CONSTANTS = {
-    "launch": 1.59,      # from one launch of a graph to the next [us]
+    "launch": 1.65,      # from one launch of a graph to the next [us]
     "operation": 1.22,   # of a scheduler, per operation of a warp [cycles]
     "sector": 0.10,      # of a multiprocessor, per sector of a request [cycles]
-    "latency": 13.3,     # of a warp, per operation, while others do not fill its gaps [cycles]
-    "bandwidth": 1386.0  # different bytes of the blocks of a launch [GB/s]
+    "latency": 13.1,     # of a warp, per operation, while others do not fill its gaps [cycles]
+    "bandwidth": 1490.0  # different bytes of the blocks of a launch [GB/s]
 }
 FITTED = ("W1_torso_700", "W3_waved_256_5000")
+LEFT_OUT = ("W1_torso_700", "floor")  # events around a launch are a large part of so short a one
 WORKLOADS = FITTED + (
-    "W6_orange_160", "W4_fish_35", "W3_waved_256_50000", "W3_waved_256_500000", "W2_rotated_128",
-    "W2_rotated_256", "W2_rotated_384", "W2_rotated_384_40", "W2_rotated_384_2560")
+    "W6_orange_160", "W4_fish_35", "W3_waved_256_50000", "W3_waved_256_500000", "W2_rotated_256",
+    "W2_rotated_384")
 MEASURED = ("2026-11-27-h200-resident.json", "2026-11-27-h200-figures.json")
 # Durations of single kernels: those of the commit c1b1dae that are the same now but for names, and
 # the raster of groups as docs/cuda.md has it.
@@ -94,6 +95,10 @@ def measured_kernels(folder=ROOT / "bench/results"):
     return medians | GROUPS
 
 
+def is_fitted(workload, part):
+    return workload["workload"] in FITTED and (workload["workload"], part) != LEFT_OUT
+
+
 def rows_of(counts):
     """(workload, part, measured or None) [us] of each step, floor and single kernel."""
     steps, kernels = measured_rows(), measured_kernels()
@@ -115,7 +120,7 @@ def predicted(workload, part, constants):
 def fit(counts):
     """The constants with the least squares of logarithms of predicted over measured, by steps along
     one of them at a time."""
-    rows = [row for row in rows_of(counts) if row[2] and row[0]["workload"] in FITTED]
+    rows = [row for row in rows_of(counts) if row[2] and is_fitted(*row[:2])]
 
     def error_of(constants):
         return sum(math.log(predicted(workload, part, constants) / value) ** 2
@@ -129,7 +134,7 @@ def fit(counts):
             for factor in (step, 1 / step):
                 tried = {**found, name: found[name] * factor}
                 error = error_of(tried)
-                if error < best:
+                if error < best - 1e-6:
                     found, best, is_better = tried, error, True
         if not is_better:
             step = math.sqrt(step)
@@ -169,7 +174,7 @@ def print_predictions(counts, constants):
     for workload, part, value in rows_of(counts):
         time = predicted(workload, part, constants)
         known = f"{value:9.1f} {100 * (time / value - 1):+5.0f}%" if value else ""
-        fitted = " fitted" if workload["workload"] in FITTED and value else ""
+        fitted = " fitted" if value and is_fitted(workload, part) else ""
         print(f"{workload['workload']:24} {part:16} {time:9.1f} {known}{fitted}")
 
 

@@ -1,5 +1,5 @@
 /// @file resample.hpp
-/// Volumes resampled by affine transforms and displacement fields.
+/// Volumes resampled by affine transforms, displacement fields and splines.
 #pragma once
 #include <array>
 #include <optional>
@@ -26,8 +26,23 @@ struct DisplacementField {
   std::vector<float> displacement;  ///< [k][j][i][3], along the world's axes
 };
 
+/// x -> x + s(x) [world], s the cubic B-spline with these coefficients at the knots of a grid; zero
+/// where not all 4 x 4 x 4 coefficients around x are there: the rule of ITK's BSplineTransform.
+struct BSplineTransform {
+  Grid grid;                         ///< of the coefficients, at least 4 along each axis
+  std::vector<double> coefficients;  ///< [k][j][i][3], along the world's axes
+};
+
+using SingleTransform = std::variant<AffineTransform, DisplacementField, BSplineTransform>;
+
+/// Transforms one after the other: the first one is applied to x first.
+struct TransformChain {
+  std::vector<SingleTransform> links;
+};
+
 /// Takes the position of an output voxel to the position of its sample in the source.
-using Transform = std::variant<AffineTransform, DisplacementField>;
+using Transform =
+    std::variant<AffineTransform, DisplacementField, BSplineTransform, TransformChain>;
 
 /// Where a transform takes points.
 /// @throws std::invalid_argument  as resample(), about the transform
@@ -39,7 +54,7 @@ struct ResampleOptions {
   Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
   Overshoot overshoot = Overshoot::keep;
   double background = 0;       ///< beyond the source; rounded to the pixel type, saturated
-  bool only_in_field = false;  ///< background beyond the grid of a displacement field, too
+  bool only_in_field = false;  ///< background beyond displacement fields and splines, too
   std::optional<Grid> output_grid = {};  ///< nothing: the grid of the sources
   int threads = 0;                       ///< 0: all cores
 };

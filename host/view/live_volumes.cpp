@@ -87,6 +87,7 @@ LiveVolumes::LiveVolumes(const Simulator& simulator, const ViewOptions& options)
         bodies[b].lookup == TransferLookup::label && !bodies[b].transfer.empty();
     followers_.push_back({scaled(image->volume, body), holds_labels, {}, {}});
   }
+  if (!bodies_.empty()) most_voxels_ /= static_cast<std::int64_t>(bodies_.size());
 }
 
 void LiveVolumes::place(std::size_t volume, const std::vector<Point3>& nodes) {

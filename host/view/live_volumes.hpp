@@ -39,7 +39,7 @@ class LiveVolumes {
   void place(std::size_t volume, const std::vector<Point3>& nodes);
 
   const Simulator& simulator_;
-  std::int64_t most_voxels_;
+  std::int64_t most_voxels_;  ///< of each volume
   int device_, threads_;
   std::vector<VolumeBody> bodies_;
   std::vector<Follower> followers_;  ///< [bodies_]

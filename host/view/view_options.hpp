@@ -24,7 +24,7 @@ struct ViewOptions {
   std::int64_t width = 960, height = 640;              ///< [pixel]
   std::optional<std::array<double, 6>> camera;         ///< eye, target
   std::string preset = "ct";                           ///< colors of volumes: ct or mr
-  std::int64_t voxels = 2'000'000;                     ///< at most, of a warped volume
+  std::int64_t voxels = 2'000'000;                     ///< at most, of all warped volumes
   std::optional<double> grab_radius;                   ///< [m]
   std::optional<double> grab_stiffness;                ///< [N/m]
   std::string screenshot, record, replay, checkpoint;  ///< files; empty: none

@@ -11,7 +11,7 @@ namespace tetwarp::view {
 struct ColorPoint {
   double sample = 0;  ///< of VolumeFrame::samples
   std::array<double, 3> color{};
-  double opacity = 0;  ///< over the length of a voxel, 0 to 1
+  double opacity = 0;  ///< over a two-hundredth of the diagonal of the volume, 0 to 1
 };
 
 /// Turning the window moves and stretches the curve.

@@ -1,6 +1,7 @@
 /// @file names.cpp
-/// The words of the enums of io.hpp.
+/// The words of the enums of io.hpp and transform_file.hpp.
 #include <tetwarp/io.hpp>
+#include <tetwarp/transform_file.hpp>
 
 namespace tetwarp {
 namespace {
@@ -15,8 +16,10 @@ constexpr EnumName<FileKind> file_kind_names[] = {
     {FileKind::hdf5, "general HDF5 file"},
     {FileKind::nifti, "NIfTI image"},
     {FileKind::analyze, "Analyze 7.5 image"},
-    {FileKind::image, "NRRD image or MetaImage"},
+    {FileKind::image, "NRRD image, MetaImage or image of FreeSurfer"},
     {FileKind::unknown, "file of unknown kind"}};
+constexpr EnumName<FslWarp> fsl_warp_names[] = {{FslWarp::relative, "relative"},
+                                                {FslWarp::absolute, "absolute"}};
 }  // namespace
 
 template <>
@@ -30,6 +33,10 @@ TETWARP_IO_EXPORT std::span<const EnumName<ContactStart>> names_of() {
 template <>
 TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of() {
   return file_kind_names;
+}
+template <>
+TETWARP_IO_EXPORT std::span<const EnumName<FslWarp>> names_of() {
+  return fsl_warp_names;
 }
 
 }  // namespace tetwarp

@@ -312,4 +312,27 @@ std::vector<double> read_reals(const Dataset& dataset) {
   return read_column<double>(dataset, H5T_NATIVE_DOUBLE);
 }
 
+std::string read_text(const Dataset& dataset) {
+  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  std::int64_t count = 1;
+  for (const std::int64_t dim : dataset.dims) count *= std::min<std::int64_t>(dim, 2);
+  if (dataset.type_class != H5T_STRING || count != 1) dataset.fail("is not one string");
+  if (H5Tis_variable_str(type.id()) > 0) {
+    char* text = nullptr;
+    if (H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) < 0) {
+      dataset.fail_with_reason("cannot be read");
+    }
+    std::string copy = text == nullptr ? "" : text;
+    H5free_memory(text);
+    return copy;
+  }
+  if (dataset.type_size > 65536) dataset.fail("is longer than 65536 bytes");
+  std::string text(dataset.type_size, '\0');
+  if (H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) {
+    dataset.fail_with_reason("cannot be read");
+  }
+  text.resize(std::min(text.size(), text.find('\0')));
+  return text;
+}
+
 }  // namespace tetwarp::h5

@@ -64,4 +64,7 @@ std::vector<std::int64_t> read_integers(const Dataset& dataset);
 /// Reads a dataset of numbers of shape [n] or [n][1].
 std::vector<double> read_reals(const Dataset& dataset);
 
+/// Reads a dataset of one string of fixed or variable length, at most 65536 bytes if fixed.
+std::string read_text(const Dataset& dataset);
+
 }  // namespace tetwarp::h5

@@ -2,8 +2,10 @@
 /// Grids and paths of headers.
 #include "io/image/image_header.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 
 namespace tetwarp {
 
@@ -23,6 +25,29 @@ void set_image_axes(const std::array<Point3, 3>& steps,
     grid.origin[row] = is_negated[row] ? 0 - origin[row] : origin[row];
   }
   check_grid(grid, "grid");
+}
+
+void set_image_steps(double count, double first, double interval, ImageHeader& header) {
+  if (!(count >= 1 && count <= 0x1p31)) {
+    throw std::invalid_argument("has " + std::to_string(count) + " steps, expected 1 to 2^31");
+  }
+  header.steps = static_cast<std::int64_t>(count);
+  const double start = std::isfinite(first) ? first : 0;
+  const double between = std::isfinite(interval) && interval > 0 ? interval : 1;
+  header.times.clear();
+  for (std::int64_t step = 0; step < header.steps; ++step) {
+    header.times.push_back(start + static_cast<double>(step) * between);
+  }
+}
+
+double mean_interval(const std::vector<double>& times) {
+  return times.size() < 2 ? 1
+                          : (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
+
+std::string shortest_text(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
 
 std::string beside(const std::string& file, const std::string& name) {

@@ -1,5 +1,5 @@
 /// @file image_header.hpp
-/// What the headers of NRRD files and of MetaImages tell alike.
+/// What the headers of NRRD files, MetaImages and FreeSurfer's images tell alike.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,14 +11,18 @@
 
 namespace tetwarp {
 
-/// An image whose samples are stored [k][j][i][component].
+/// An image whose samples are stored [step][k][j][i][component].
 struct ImageHeader {
   Grid grid;  ///< in RAS
   PixelType type = PixelType::uint8;
   int components = 1;
-  std::string data_file;         ///< that holds the samples; may be the header's own
-  std::int64_t data_offset = 0;  ///< of the samples; -1: they are the last bytes of the file
-  bool is_packed = false;        ///< by zlib or gzip
+  std::int64_t steps = 1;
+  std::vector<double> times = {};  ///< of the steps, in seconds where their unit is known; empty:
+                                   ///< one step, which is no series
+  std::string data_file;           ///< that holds the samples; may be the header's own
+  std::int64_t data_offset = 0;    ///< of the samples; -1: they are the last bytes of the file
+  bool is_packed = false;          ///< by zlib or gzip
+  std::int64_t skipped = 0;        ///< bytes before the samples in what is packed
   bool is_big_endian = false;
   std::vector<std::string> left_out = {};  ///< other fields of the header
 
@@ -33,6 +37,17 @@ void set_image_axes(const std::array<Point3, 3>& steps,
                     const Point3& origin,
                     const std::array<bool, 3>& is_negated,
                     Grid& grid);
+
+/// Sets steps and their times, which begin at `first` and are `interval` apart.
+/// @param interval  1 where it is not a positive number
+/// @throws std::invalid_argument  when the count is not from 1 to 2^31
+void set_image_steps(double count, double first, double interval, ImageHeader& header);
+
+/// The mean interval of times; 1 of a single one.
+double mean_interval(const std::vector<double>& times);
+
+/// The shortest text of a number that is read as the same one.
+std::string shortest_text(double value);
 
 /// A file in the folder of another one, unless its path is absolute.
 std::string beside(const std::string& file, const std::string& name);

@@ -1,5 +1,5 @@
 /// @file image_volume.cpp
-/// Samples of NRRD files and MetaImages, read where they lie or unpacked to a temporary file.
+/// Samples of images, read where they lie or unpacked to a temporary file.
 #include "io/image/image_volume.hpp"
 
 #include <fcntl.h>
@@ -18,6 +18,7 @@
 #include "io/files/memory.hpp"
 #include "io/files/scratch_file.hpp"
 #include "io/image/meta_header.hpp"
+#include "io/image/mgh_header.hpp"
 #include "io/image/nrrd_header.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
@@ -26,7 +27,9 @@ namespace {
 const std::string image_array = Volume{}.name;
 
 ImageHeader read_header(const std::string& path) {
-  return is_nrrd(path) ? read_nrrd_header(path) : read_meta_header(path);
+  return is_nrrd(path)         ? read_nrrd_header(path)
+         : is_meta_image(path) ? read_meta_header(path)
+                               : read_mgh_header(path);
 }
 
 /// A file that is open for reading.
@@ -101,17 +104,24 @@ void swap_bytes(std::byte* samples, std::size_t size, std::size_t count) {
 
 class ImageSource : public VolumeSource {
  public:
-  ImageSource(const std::string& path, const VolumeReadOptions& options)
+  ImageSource(const std::string& path, std::int64_t step, const VolumeReadOptions& options)
       : path_(path),
         header_(read_header(path)),
         array_{image_array, header_.type, header_.components},
         scratch_(options.scratch),
+        step_(step),
         file_(header_.data_file, path) {
+    if (step < 0 || step >= header_.steps) {
+      throw IoError(path, "",
+                    "has no step " + std::to_string(step) + ", it has " +
+                        std::to_string(header_.steps) + " from 0 on");
+    }
     // Packed by zlib, samples take no less than this share of their size.
     constexpr double least_share = 1.0 / 1040;
     const double share = header_.is_packed ? least_share : 1;
     const double wanted = static_cast<double>(header_.grid.voxel_count()) *
-                          static_cast<double>(header_.voxel_bytes()) * share;
+                          static_cast<double>(header_.voxel_bytes()) *
+                          static_cast<double>(header_.steps) * share;
     const double after_header =
         static_cast<double>(file_.size() - std::max<std::int64_t>(0, header_.data_offset));
     if (wanted > after_header) {
@@ -121,7 +131,7 @@ class ImageSource : public VolumeSource {
     }
     if (header_.data_offset >= 0) return;
     if (header_.is_packed) throw IoError(path, "", "a packed image needs the place of its samples");
-    header_.data_offset = file_.size() - bytes();
+    header_.data_offset = file_.size() - header_.steps * bytes();
   }
 
   const Grid& grid() const override { return header_.grid; }
@@ -139,10 +149,9 @@ class ImageSource : public VolumeSource {
     const auto voxels = static_cast<std::size_t>(region.voxel_count());
     const bool is_whole = region == Region{{0, 0, 0}, header_.grid.dims};
     if (header_.is_packed && is_whole && !unpacked_) {
-      if (!Unpacker(file_.descriptor(), header_.data_offset)
-               .read(out, header_.voxel_bytes() * voxels)) {
-        fail();
-      }
+      Unpacker unpacker(file_.descriptor(), header_.data_offset);
+      skip(unpacker);
+      if (!unpacker.read(out, header_.voxel_bytes() * voxels)) fail();
     } else {
       if (header_.is_packed && !unpacked_) unpack();
       read_runs(region, out);
@@ -158,6 +167,15 @@ class ImageSource : public VolumeSource {
   std::int64_t bytes() const {
     return header_.grid.voxel_count() * static_cast<std::int64_t>(header_.voxel_bytes());
   }
+  /// Reads over what is packed before the samples of the step.
+  void skip(Unpacker& unpacker) const {
+    std::vector<std::byte> part(nifti_part_bytes);
+    for (std::int64_t left = header_.skipped + step_ * bytes(); left > 0;) {
+      const std::int64_t count = std::min<std::int64_t>(left, std::ssize(part));
+      if (!unpacker.read(part.data(), static_cast<std::size_t>(count))) fail();
+      left -= count;
+    }
+  }
   [[noreturn]] void fail() const {
     throw IoError(path_, "", "its samples are damaged or truncated; write it again");
   }
@@ -165,7 +183,7 @@ class ImageSource : public VolumeSource {
   void read_runs(const Region& region, std::byte* out) const {
     const auto size = static_cast<std::int64_t>(header_.voxel_bytes());
     const int descriptor = unpacked_ ? unpacked_->descriptor() : file_.descriptor();
-    const std::int64_t start = unpacked_ ? 0 : header_.data_offset;
+    const std::int64_t start = unpacked_ ? 0 : header_.data_offset + step_ * bytes();
     const bool is_read = for_each_run(
         header_.grid.dims, region, std::int64_t{1} << 24,
         [&](std::int64_t in_grid, std::int64_t in_region, std::int64_t count) {
@@ -179,6 +197,7 @@ class ImageSource : public VolumeSource {
     const std::string folder = std::filesystem::temp_directory_path().string();
     auto scratch = std::make_unique<ScratchFile>(scratch_.empty() ? folder + "/tetwarp" : scratch_);
     Unpacker unpacker(file_.descriptor(), header_.data_offset);
+    skip(unpacker);
     std::vector<std::byte> part(nifti_part_bytes);
     for (std::int64_t done = 0; done < bytes();) {
       const auto count =
@@ -198,13 +217,14 @@ class ImageSource : public VolumeSource {
   ImageHeader header_;
   ArrayHeader array_;
   std::string scratch_;
+  std::int64_t step_;
   OpenFile file_;
   std::unique_ptr<ScratchFile> unpacked_;
 };
 }  // namespace
 
 bool is_image(const std::string& path) {
-  return is_nrrd(path) || is_meta_image(path);
+  return is_nrrd(path) || is_meta_image(path) || is_mgh(path);
 }
 
 VolumeHeader read_image_volume_header(const std::string& path) {
@@ -214,6 +234,7 @@ VolumeHeader read_image_volume_header(const std::string& path) {
   volume.arrays = {{image_array, header.type, header.components}};
   volume.active = image_array;
   volume.left_out = header.left_out;
+  volume.times = header.times;
   return volume;
 }
 
@@ -224,8 +245,7 @@ std::unique_ptr<VolumeSource> open_image_source(const std::string& path,
   if (!array.empty() && array != image_array) {
     throw IoError(path, array, "no such array; the image has one, called " + image_array);
   }
-  if (step != 0) throw IoError(path, "", "has no step " + std::to_string(step));
-  return std::make_unique<ImageSource>(path, options);
+  return std::make_unique<ImageSource>(path, step, options);
 }
 
 }  // namespace tetwarp

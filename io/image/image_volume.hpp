@@ -1,5 +1,5 @@
 /// @file image_volume.hpp
-/// NRRD files and MetaImages as volumes.
+/// NRRD files, MetaImages and FreeSurfer's images as volumes.
 #pragma once
 #include <cstdint>
 #include <memory>

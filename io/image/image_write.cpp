@@ -7,6 +7,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,84 +19,173 @@
 #include "io/files/scratch_file.hpp"
 #include "io/files/sink_checks.hpp"
 #include "io/image/meta_header.hpp"
+#include "io/image/mgh_header.hpp"
 #include "io/image/nrrd_header.hpp"
 #include "io/nifti/nifti_components.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
 namespace tetwarp {
 namespace {
+/// Formats by the end of a name.
+enum class ImageFormat { nrrd, meta, meta_pair, mgh };
+
+std::optional<ImageFormat> format_of(const std::string& path) {
+  if (has_extension(path, ".nrrd")) return ImageFormat::nrrd;
+  if (has_extension(path, ".mha")) return ImageFormat::meta;
+  if (has_extension(path, ".mhd")) return ImageFormat::meta_pair;
+  if (has_extension(path, ".mgh") || has_extension(path, ".mgz")) return ImageFormat::mgh;
+  return std::nullopt;
+}
+
+/// The file of samples of a pair.
+std::string samples_of(const std::string& path, bool is_packed) {
+  const std::string stem = path.substr(0, path.size() - std::string(".mhd").size());
+  return stem + (is_packed ? ".zraw" : ".raw");
+}
+
 class ImageSink : public VolumeSink {
  public:
   ImageSink(const std::string& path,
             const Grid& grid,
             const ArrayHeader& array,
-            const VolumeWriteOptions& options)
+            const VolumeWriteOptions& options,
+            bool is_temporal)
       : path_(path),
-        grid_(grid),
-        array_(array),
-        size_(array.components * static_cast<std::int64_t>(size_of(array.type))),
-        is_nrrd_(has_extension(path, ".nrrd")),
-        level_(options.compress),
-        file_(path),
-        descriptor_(open(file_.temporary().c_str(), O_WRONLY | O_CLOEXEC)) {
-    const bool is_packed = level_ > 0;
-    const std::string header =
-        is_nrrd_ ? nrrd_header_text(grid, array.type, array.components, is_packed)
-                 : meta_header_text(grid, array.type, array.components, is_packed);
-    start_ = std::ssize(header);
-    if (descriptor_ < 0 || !write_at(descriptor_, header.data(), header.size(), 0)) fail();
-    if (is_packed) scratch_.emplace(path);
+        format_(*format_of(path)),
+        is_itk_field_(array.is_itk_field),
+        is_temporal_(is_temporal),
+        level_(options.compress) {
+    header_.grid = grid;
+    header_.type = array.type;
+    header_.components = array.components;
+    // .mgz is packed, .mgh is not.
+    if (format_ == ImageFormat::mgh) level_ = has_extension(path, ".mgz") ? std::max(level_, 1) : 0;
+    header_.is_packed = level_ > 0;
+    std::string samples = path;
+    if (format_ == ImageFormat::meta_pair) {
+      samples = samples_of(path, header_.is_packed);
+      std::error_code error;
+      if (std::filesystem::exists(samples, error) && !std::filesystem::exists(path, error)) {
+        throw IoError(
+            path, "",
+            "its samples would replace '" + samples + "'; name another file, or remove it");
+      }
+      header_.data_file = std::filesystem::path(samples).filename().string();
+    }
+    static_cast<void>(header_text());  // so that what the format does not hold is refused now
+    file_.emplace(samples);
+    descriptor_ = open(file_->temporary().c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail();
+    if (header_.is_packed || is_temporal) {
+      scratch_.emplace(path);
+      return;
+    }
+    write_header();
     // Samples that nobody writes are zero.
-    if (!is_packed && ftruncate(descriptor_, start_ + bytes()) != 0) fail();
+    if (ftruncate(descriptor_, start_ + bytes()) != 0) fail();
   }
   ~ImageSink() override { close_file(); }
 
-  void begin_step(double) override { refuse_steps(); }
-  void repeat_step(double) override { refuse_steps(); }
+  void begin_step(double time) override { header_.times.push_back(time); }
+
+  void repeat_step(double time) override {
+    std::vector<std::byte> part(nifti_part_bytes);
+    const std::int64_t to = std::ssize(header_.times) * step_bytes(), from = to - step_bytes();
+    for (std::int64_t done = 0; done < step_bytes();) {
+      const auto count =
+          static_cast<std::size_t>(std::min<std::int64_t>(std::ssize(part), step_bytes() - done));
+      if (!read_at(scratch_->descriptor(), part.data(), count, from + done) ||
+          !write_at(scratch_->descriptor(), part.data(), count, to + done)) {
+        fail();
+      }
+      done += static_cast<std::int64_t>(count);
+    }
+    header_.times.push_back(time);
+  }
 
   void write(std::size_t, const Region& region, const void* samples) override {
     const auto* const in = static_cast<const std::byte*>(samples);
     const int descriptor = scratch_ ? scratch_->descriptor() : descriptor_;
-    const std::int64_t start = scratch_ ? 0 : start_;
+    const std::int64_t step = is_temporal_ ? std::ssize(header_.times) - 1 : 0;
+    const std::int64_t start = (scratch_ ? 0 : start_) + step * step_bytes();
+    const auto size = static_cast<std::int64_t>(header_.voxel_bytes());
     std::vector<std::byte> turned;
     const bool is_written =
-        for_each_run(grid_.dims, region, std::int64_t{1} << 16,
+        for_each_run(header_.grid.dims, region, std::int64_t{1} << 16,
                      [&](std::int64_t in_grid, std::int64_t in_region, std::int64_t count) {
-                       const std::byte* part = in + in_region * size_;
-                       const auto bytes = static_cast<std::size_t>(count * size_);
-                       if (array_.is_itk_field) {  // from RAS to LPS
+                       const std::byte* part = in + in_region * size;
+                       const auto bytes = static_cast<std::size_t>(count * size);
+                       if (is_itk_field_ || format_ == ImageFormat::mgh) {
                          turned.assign(part, part + bytes);
                          turn(turned);
                          part = turned.data();
                        }
-                       return write_at(descriptor, part, bytes, start + in_grid * size_);
+                       return write_at(descriptor, part, bytes, start + in_grid * size);
                      });
     if (!is_written) fail();
   }
 
   WrittenFile finish() override {
-    if (scratch_) pack();
+    if (scratch_) {
+      // Of blocks that nobody wrote the samples are zero.
+      if (ftruncate(scratch_->descriptor(), bytes()) != 0) fail();
+      if (!header_.is_packed) {
+        write_header();
+        copy();
+      } else {
+        if (format_ != ImageFormat::mgh) write_header();
+        pack();
+      }
+    }
     if (!close_file()) fail();
     WrittenFile written;
-    written.bytes = file_.finish();
+    written.bytes = file_->finish();
+    if (format_ == ImageFormat::meta_pair)
+      written.bytes += write_finished_file(path_, header_text());
     return written;
   }
 
  private:
-  std::int64_t bytes() const { return grid_.voxel_count() * size_; }
+  std::int64_t step_bytes() const {
+    return header_.grid.voxel_count() * static_cast<std::int64_t>(header_.voxel_bytes());
+  }
+  std::int64_t bytes() const {
+    return step_bytes() * (is_temporal_ ? std::ssize(header_.times) : 1);
+  }
 
-  /// Negates the first two of three components.
+  std::string header_text() const {
+    ImageHeader header = header_;
+    header.steps = std::max<std::int64_t>(1, std::ssize(header.times));
+    try {
+      return format_ == ImageFormat::nrrd  ? nrrd_header_text(header)
+             : format_ == ImageFormat::mgh ? mgh_header_text(header)
+                                           : meta_header_text(header);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(path_, "", error.what());
+    }
+  }
+
+  /// Writes the header where it is the beginning of the file.
+  void write_header() {
+    if (format_ == ImageFormat::meta_pair) return;
+    const std::string text = header_text();
+    start_ = std::ssize(text);
+    if (!write_at(descriptor_, text.data(), text.size(), 0)) fail();
+  }
+
+  /// Samples as they are stored: displacements in LPS in place of RAS, of FreeSurfer's images in
+  /// big-endian order.
   void turn(std::span<std::byte> samples) const {
-    const std::size_t size = size_of(array_.type);
+    const std::size_t size = size_of(header_.type);
     for (std::size_t s = 0; s < samples.size() / size; ++s) {
-      if (s % 3 < 2) negate_samples(array_.type, samples.subspan(s * size, size));
+      const std::span<std::byte> sample = samples.subspan(s * size, size);
+      if (is_itk_field_ && s % 3 < 2) negate_samples(header_.type, sample);
+      const bool is_little = std::endian::native == std::endian::little;
+      if (format_ == ImageFormat::mgh && is_little) std::ranges::reverse(sample);
     }
   }
 
   [[noreturn]] void fail() const { throw_disk_error(path_); }
-  [[noreturn]] void refuse_steps() const {
-    throw IoError(path_, "", "holds no steps; write .nii.gz or .vtkhdf");
-  }
 
   bool close_file() {
     if (descriptor_ < 0) return true;
@@ -102,15 +194,37 @@ class ImageSink : public VolumeSink {
     return is_closed;
   }
 
-  /// NRRD has gzip's format, MetaImage zlib's.
+  /// Copies all steps behind the header.
+  void copy() {
+    std::vector<std::byte> part(nifti_part_bytes);
+    for (std::int64_t done = 0; done < bytes();) {
+      const auto count =
+          static_cast<std::size_t>(std::min<std::int64_t>(std::ssize(part), bytes() - done));
+      if (!read_at(scratch_->descriptor(), part.data(), count, done) ||
+          !write_at(descriptor_, part.data(), count, start_ + done)) {
+        fail();
+      }
+      done += static_cast<std::int64_t>(count);
+    }
+    scratch_.reset();
+  }
+
+  /// MetaImage has zlib's format, the others gzip's; FreeSurfer packs the header, too.
   void pack() {
     z_stream stream{};
-    const int window = 15 + (is_nrrd_ ? 16 : 0);
+    const bool is_gzip = format_ == ImageFormat::nrrd || format_ == ImageFormat::mgh;
+    const int window = 15 + (is_gzip ? 16 : 0);
     constexpr int memory = 8;
     if (deflateInit2(&stream, level_, Z_DEFLATED, window, memory, Z_DEFAULT_STRATEGY) != Z_OK) {
       throw IoError(path_, "", "cannot be packed: zlib has no memory");
     }
     std::vector<Bytef> plain(nifti_part_bytes), packed(nifti_part_bytes);
+    if (format_ == ImageFormat::mgh) {
+      const std::string text = header_text();
+      std::ranges::copy(text, plain.begin());
+      stream.next_in = plain.data();
+      stream.avail_in = static_cast<uInt>(text.size());
+    }
     std::int64_t done = 0, at = start_;
     bool is_sound = true;
     for (int state = Z_OK; state != Z_STREAM_END && is_sound;) {
@@ -135,20 +249,20 @@ class ImageSink : public VolumeSink {
   }
 
   std::string path_;
-  Grid grid_;
-  ArrayHeader array_;
-  std::int64_t size_;  // of a voxel
-  bool is_nrrd_;
+  ImageFormat format_;
+  bool is_itk_field_;
+  bool is_temporal_;
   int level_;
-  FinishedFile file_;
-  int descriptor_;
+  ImageHeader header_;
+  std::optional<FinishedFile> file_;  // that holds the samples
+  int descriptor_ = -1;
   std::int64_t start_ = 0;  // of the samples
   std::optional<ScratchFile> scratch_;
 };
 }  // namespace
 
 bool has_image_name(const std::string& path) {
-  return has_extension(path, ".nrrd") || has_extension(path, ".mha");
+  return format_of(path).has_value();
 }
 
 std::unique_ptr<VolumeSink> make_image_sink(const std::string& path,
@@ -157,8 +271,7 @@ std::unique_ptr<VolumeSink> make_image_sink(const std::string& path,
                                             const VolumeWriteOptions& options,
                                             bool is_temporal) {
   const ArrayHeader& array = only_array(path, "an image of this format", grid, arrays);
-  if (is_temporal) throw IoError(path, "", "holds no steps; write .nii.gz or .vtkhdf");
-  return std::make_unique<ImageSink>(path, grid, array, options);
+  return std::make_unique<ImageSink>(path, grid, array, options, is_temporal);
 }
 
 }  // namespace tetwarp

@@ -128,12 +128,13 @@ class MetaReader {
   void read_layout() {
     const auto dimension = take("NDims");
     const std::vector<double> count = numbers_of(dimension.value_or(""), "NDims", 1);
-    if (count[0] != 2 && count[0] != 3) {
-      fail("NDims", "is " + *dimension + ", expected 2 or 3; convert series to NIfTI");
+    if (count[0] != 2 && count[0] != 3 && count[0] != 4) {
+      fail("NDims", "is " + *dimension + ", expected 2, 3, or 4 of a series");
     }
     dims_ = static_cast<std::size_t>(count[0]);
     const std::vector<double> sizes = numbers_of(take("DimSize").value_or(""), "DimSize", dims_);
-    for (std::size_t axis = 0; axis < dims_; ++axis) {
+    if (dims_ == 4) steps_ = sizes[3];
+    for (std::size_t axis = 0; axis < std::min<std::size_t>(3, dims_); ++axis) {
       if (!(sizes[axis] >= 1 && sizes[axis] <= 0x1p30)) fail("DimSize", "is not from 1 to 2^30");
       header_.grid.dims[axis] = static_cast<std::int64_t>(sizes[axis]);
     }
@@ -166,15 +167,20 @@ class MetaReader {
     }
     std::array<Point3, 3> steps{{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}};
     Point3 origin{0, 0, 0};
-    for (std::size_t axis = 0; axis < dims_; ++axis) {
+    const std::size_t of_space = std::min<std::size_t>(3, dims_);
+    for (std::size_t axis = 0; axis < of_space; ++axis) {
+      if (dims_ == 4 && (axes[4 * axis + 3] != 0 || axes[12 + axis] != 0)) {
+        fail("TransformMatrix", "mixes the fourth axis with those of space");
+      }
       steps[axis] = {0, 0, 0};
-      for (std::size_t row = 0; row < dims_; ++row) {
+      for (std::size_t row = 0; row < of_space; ++row) {
         steps[axis][row] = axes[axis * dims_ + row] * spacing[axis];
       }
       origin[axis] = place[axis];
     }
     try {
       set_image_axes(steps, origin, {true, true, false}, header_.grid);
+      if (dims_ == 4) set_image_steps(steps_, place[3], spacing[3], header_);
     } catch (const std::invalid_argument& error) {
       fail("TransformMatrix", error.what());
     }
@@ -200,14 +206,10 @@ class MetaReader {
   std::string path_;
   std::map<std::string, std::string> fields_;
   std::size_t dims_ = 3;
+  double steps_ = 1;
   std::int64_t header_end_ = 0;
   ImageHeader header_;
 };
-
-std::string meta_number(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 }  // namespace
 
 bool is_meta_image(const std::string& path) {
@@ -222,25 +224,37 @@ ImageHeader read_meta_header(const std::string& path) {
   return MetaReader(path).header();
 }
 
-std::string meta_header_text(const Grid& grid, PixelType type, int components, bool is_packed) {
-  const auto* const known = std::find_if(std::begin(meta_types), std::end(meta_types),
-                                         [&](const MetaType& entry) { return type == entry.type; });
-  const auto lps = [](std::size_t row, double x) { return " " + meta_number(row < 2 ? 0 - x : x); };
-  std::string text =
-      std::string("ObjectType = Image\nNDims = 3\nBinaryData = True\n") +
-      "BinaryDataByteOrderMSB = False\nCompressedData = " + (is_packed ? "True" : "False") +
-      "\nTransformMatrix =";
+std::string meta_header_text(const ImageHeader& header) {
+  const auto* const known =
+      std::find_if(std::begin(meta_types), std::end(meta_types),
+                   [&](const MetaType& entry) { return header.type == entry.type; });
+  const Grid& grid = header.grid;
+  const bool has_steps = !header.times.empty();
+  const auto lps = [](std::size_t row, double x) {
+    return " " + shortest_text(row < 2 ? 0 - x : x);
+  };
+  const auto of_steps = [&](const std::string& part) { return has_steps ? part : std::string(); };
+  std::string text = std::string("ObjectType = Image\nNDims = ") + (has_steps ? "4" : "3") +
+                     "\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = " +
+                     (header.is_packed ? "True" : "False") + "\nTransformMatrix =";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t row = 0; row < 3; ++row) text += lps(row, grid.direction[3 * row + axis]);
+    text += of_steps(" 0");
   }
-  text += "\nOffset =";
+  text += of_steps(" 0 0 0 1") + "\nOffset =";
   for (std::size_t row = 0; row < 3; ++row) text += lps(row, grid.origin[row]);
-  text += "\nCenterOfRotation = 0 0 0\nElementSpacing =";
-  for (const double spacing : grid.spacing) text += " " + meta_number(spacing);
+  if (has_steps) text += " " + shortest_text(header.times.front());
+  text += "\nCenterOfRotation = 0 0 0" + of_steps(" 0") + "\nElementSpacing =";
+  for (const double spacing : grid.spacing) text += " " + shortest_text(spacing);
+  if (has_steps) text += " " + shortest_text(mean_interval(header.times));
   text += "\nDimSize =";
   for (const std::int64_t size : grid.dims) text += " " + std::to_string(size);
-  if (components > 1) text += "\nElementNumberOfChannels = " + std::to_string(components);
-  return text + "\nElementType = " + known->name + "\nElementDataFile = LOCAL\n";
+  if (has_steps) text += " " + std::to_string(header.times.size());
+  if (header.components > 1) {
+    text += "\nElementNumberOfChannels = " + std::to_string(header.components);
+  }
+  return text + "\nElementType = " + known->name +
+         "\nElementDataFile = " + (header.data_file.empty() ? "LOCAL" : header.data_file) + "\n";
 }
 
 }  // namespace tetwarp

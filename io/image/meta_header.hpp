@@ -15,7 +15,7 @@ bool is_meta_image(const std::string& path);
 /// @throws IoError  about a header that is damaged or of an image that is not read
 ImageHeader read_meta_header(const std::string& path);
 
-/// A header that is followed by the samples.
-std::string meta_header_text(const Grid& grid, PixelType type, int components, bool is_packed);
+/// A header of samples in little-endian order, which follow it if its data_file is empty.
+std::string meta_header_text(const ImageHeader& header);
 
 }  // namespace tetwarp

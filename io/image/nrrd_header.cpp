@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -169,8 +170,8 @@ class NrrdReader {
     if (known == std::end(type_names)) fail("type", "'" + type + "' is not read");
     header_.type = known->type;
     const std::int64_t dimension = whole(required("dimension"), "dimension");
-    if (dimension != std::ssize(sizes_) || dimension < 2 || dimension > 4) {
-      fail("dimension", "expected 2 to 4 axes, each with a size");
+    if (dimension != std::ssize(sizes_) || dimension < 2 || dimension > 5) {
+      fail("dimension", "expected 2 to 5 axes, each with a size");
     }
     const auto kinds = words_in(take("kinds").value_or(""));
     const bool has_kinds = kinds.size() == sizes_.size();
@@ -179,27 +180,55 @@ class NrrdReader {
     };
     const std::string directions =
         fields_.contains("space directions") ? fields_["space directions"] : "";
+    const bool is_last_step = sizes_.size() > 2 && (has_kinds ? !is_space(sizes_.size() - 1)
+                                                              : directions.ends_with("none"));
+    const std::size_t with_steps = sizes_.size() - (is_last_step ? 1 : 0);
     const bool is_first_none = directions.starts_with("none");
-    first_ = dimension == 4 || is_first_none || (has_kinds && !is_space(0)) ? 1 : 0;
+    first_ = with_steps == 4 || is_first_none || (has_kinds && !is_space(0)) ? 1 : 0;
     if (has_kinds && first_ == 1 && is_space(0)) {
       fail("kinds",
-           "its first axis is one of space, and so are three others; 4D images are not "
-           "read, convert it to NIfTI");
+           "its four axes are all of space; name the kind of that of time, which is the last one");
     }
-    for (std::size_t axis = first_; has_kinds && axis < sizes_.size(); ++axis) {
-      if (!is_space(axis)) fail("kinds", "components that are not the first axis are not read");
+    for (std::size_t axis = first_; has_kinds && axis < with_steps; ++axis) {
+      if (!is_space(axis)) {
+        fail("kinds", "components are read on the first axis only, and steps on the last one");
+      }
     }
-    const std::size_t of_space = sizes_.size() - first_;
-    if (of_space < 2 || of_space > 3) fail("dimension", "expected two or three axes of space");
+    of_space_ = with_steps - first_;
+    if (of_space_ < 2 || of_space_ > 3) fail("dimension", "expected two or three axes of space");
     if (first_ == 1) {
       if (sizes_[0] < 1 || sizes_[0] > 9) {
         fail("sizes", "has " + std::to_string(sizes_[0]) +
-                          " components, expected 1 to 9; convert series to NIfTI");
+                          " components, expected 1 to 9; move the axis of a series to the end");
       }
       header_.components = static_cast<int>(sizes_[0]);
     }
+    if (is_last_step) read_steps();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      header_.grid.dims[axis] = axis < of_space ? sizes_[first_ + axis] : 1;
+      header_.grid.dims[axis] = axis < of_space_ ? sizes_[first_ + axis] : 1;
+    }
+  }
+
+  /// The number of the last axis in a field of one number per axis; NaN: none.
+  double of_last_axis(const std::string& field) {
+    if (!fields_.contains(field)) return std::numeric_limits<double>::quiet_NaN();
+    const auto words = words_in(fields_[field]);
+    if (words.size() != sizes_.size()) fail(field, "expected one for every axis");
+    const bool is_none = words.back() == "NaN" || words.back() == "nan";
+    return is_none ? std::numeric_limits<double>::quiet_NaN() : real(words.back(), field);
+  }
+
+  /// Times of the steps, whose axis is the last one.
+  void read_steps() {
+    const std::string units = take("units").value_or("");
+    const double unit = units.ends_with("\"ms\"") ? 1e-3 : units.ends_with("\"us\"") ? 1e-6 : 1;
+    const double first = unit * of_last_axis("axis mins");
+    take("axis mins");
+    try {
+      set_image_steps(static_cast<double>(sizes_.back()), first, unit * of_last_axis("spacings"),
+                      header_);
+    } catch (const std::invalid_argument& error) {
+      fail("sizes", error.what());
     }
   }
 
@@ -216,7 +245,6 @@ class NrrdReader {
     }
     take("space dimension");
     std::array<Point3, 3> steps{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    const std::size_t of_space = sizes_.size() - first_;
     if (const auto directions = take("space directions")) {
       std::vector<std::string> parts;
       std::string joined;  // "(1, 0, 0)" may have blanks
@@ -227,18 +255,18 @@ class NrrdReader {
         joined.clear();
       }
       if (parts.size() != sizes_.size()) fail("space directions", "expected one for every axis");
-      for (std::size_t axis = 0; axis < of_space; ++axis) {
+      for (std::size_t axis = 0; axis < of_space_; ++axis) {
         steps[axis] = vector(parts[first_ + axis], "space directions");
       }
       take("spacings");
     } else if (const auto spacings = take("spacings")) {
       const auto words = words_in(*spacings);
       if (words.size() != sizes_.size()) fail("spacings", "expected one for every axis");
-      for (std::size_t axis = 0; axis < of_space; ++axis) {
+      for (std::size_t axis = 0; axis < of_space_; ++axis) {
         steps[axis][axis] = real(words[first_ + axis], "spacings");
       }
     }
-    if (of_space == 2) steps[2] = unit(cross(steps[0], steps[1]));
+    if (of_space_ == 2) steps[2] = unit(cross(steps[0], steps[1]));
     const auto origin = take("space origin");
     try {
       set_image_axes(steps, origin ? vector(*origin, "space origin") : Point3{0, 0, 0}, is_negated,
@@ -278,16 +306,12 @@ class NrrdReader {
   std::string path_;
   std::map<std::string, std::string> fields_;
   std::vector<std::int64_t> sizes_;
-  std::size_t first_ = 0;  // axis of space
+  std::size_t first_ = 0;     // axis of space
+  std::size_t of_space_ = 3;  // number of these
   std::int64_t header_end_ = 0;
   bool has_blank_ = false;
   ImageHeader header_;
 };
-
-std::string number_text(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 }  // namespace
 
 bool is_nrrd(const std::string& path) {
@@ -300,18 +324,22 @@ ImageHeader read_nrrd_header(const std::string& path) {
   return NrrdReader(path).header();
 }
 
-std::string nrrd_header_text(const Grid& grid, PixelType type, int components, bool is_packed) {
-  const auto* const known = std::find_if(std::begin(type_names), std::end(type_names),
-                                         [&](const TypeName& entry) { return type == entry.type; });
-  const bool has_components = components > 1;
+std::string nrrd_header_text(const ImageHeader& header) {
+  const auto* const known =
+      std::find_if(std::begin(type_names), std::end(type_names),
+                   [&](const TypeName& entry) { return header.type == entry.type; });
+  const Grid& grid = header.grid;
+  const bool has_components = header.components > 1, has_steps = !header.times.empty();
+  const int dimension = 3 + (has_components ? 1 : 0) + (has_steps ? 1 : 0);
   std::string text = "NRRD0004\n# written by tetwarp\ntype: " + std::string(known->name) +
-                     "\ndimension: " + (has_components ? "4" : "3") +
+                     "\ndimension: " + std::to_string(dimension) +
                      "\nspace: left-posterior-superior\nsizes:";
-  if (has_components) text += " " + std::to_string(components);
+  if (has_components) text += " " + std::to_string(header.components);
   for (const std::int64_t size : grid.dims) text += " " + std::to_string(size);
+  if (has_steps) text += " " + std::to_string(header.times.size());
   text += "\nspace directions:";
   if (has_components) text += " none";
-  const auto lps = [](std::size_t row, double x) { return number_text(row < 2 ? 0 - x : x); };
+  const auto lps = [](std::size_t row, double x) { return shortest_text(row < 2 ? 0 - x : x); };
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t row = 0; row < 3; ++row) {
       text +=
@@ -319,11 +347,19 @@ std::string nrrd_header_text(const Grid& grid, PixelType type, int components, b
     }
     text += ")";
   }
-  text += std::string("\nkinds: ") + (has_components ? components == 3 ? "vector " : "list " : "") +
-          "domain domain domain\nendian: little\nencoding: " + (is_packed ? "gzip" : "raw") +
-          "\nspace origin: (" + lps(0, grid.origin[0]) + "," + lps(1, grid.origin[1]) + "," +
-          lps(2, grid.origin[2]) + ")\n\n";
-  return text;
+  if (has_steps) {
+    std::string none;
+    for (int axis = 1; axis < dimension; ++axis) none += " NaN";
+    text += " none\nspacings:" + none + " " + shortest_text(mean_interval(header.times)) +
+            "\naxis mins:" + none + " " + shortest_text(header.times.front()) + "\nunits:";
+    for (int axis = 1; axis < dimension; ++axis) text += " \"\"";
+    text += " \"s\"";
+  }
+  const char* const first = !has_components ? "" : header.components == 3 ? "vector " : "list ";
+  return text + "\nkinds: " + first + "domain domain domain" + (has_steps ? " list" : "") +
+         "\nendian: little\nencoding: " + (header.is_packed ? "gzip" : "raw") +
+         "\nspace origin: (" + lps(0, grid.origin[0]) + "," + lps(1, grid.origin[1]) + "," +
+         lps(2, grid.origin[2]) + ")\n\n";
 }
 
 }  // namespace tetwarp

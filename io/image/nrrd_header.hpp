@@ -14,7 +14,7 @@ bool is_nrrd(const std::string& path);
 /// @throws IoError  about a header that is damaged or of an image that is not read
 ImageHeader read_nrrd_header(const std::string& path);
 
-/// A header that is followed by the samples.
-std::string nrrd_header_text(const Grid& grid, PixelType type, int components, bool is_packed);
+/// A header that is followed by the samples, in little-endian order.
+std::string nrrd_header_text(const ImageHeader& header);
 
 }  // namespace tetwarp

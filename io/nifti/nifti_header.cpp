@@ -77,7 +77,32 @@ void check_dims(const std::string& path, NiftiFields& fields) {
   }
 }
 
+/// Bytes of a color; 0: the samples are numbers.
+int color_bytes(const NiftiFields& fields) {
+  return fields.datatype == NIFTI_TYPE_RGB24 ? 3 : fields.datatype == NIFTI_TYPE_RGBA32 ? 4 : 0;
+}
+
+/// Makes colors components, for which NIfTI has intents of their own.
+void set_colors(const std::string& path, const NiftiFields& fields, NiftiHeader& header) {
+  const int bytes = color_bytes(fields);
+  if (bytes == 0) return;
+  if (header.components != 1) {
+    throw IoError(path, "dim[5]",
+                  "is " + std::to_string(header.components) +
+                      " colors per voxel, expected 1; correct the header");
+  }
+  header.components = bytes;
+  header.is_interleaved = true;
+  header.facts.intent_code = bytes == 3 ? NIFTI_INTENT_RGB_VECTOR : NIFTI_INTENT_RGBA_VECTOR;
+}
+
 PixelType checked_type(const std::string& path, const NiftiFields& fields) {
+  if (const int bytes = color_bytes(fields); bytes > 0) {
+    if (fields.bitpix == 8 * bytes) return PixelType::uint8;
+    throw IoError(path, "bitpix",
+                  "is " + std::to_string(fields.bitpix) + ", but colors have " +
+                      std::to_string(8 * bytes) + "; correct the header");
+  }
   const auto found =
       std::ranges::find(datatypes, fields.datatype, [](const auto& entry) { return entry.first; });
   if (found == std::end(datatypes)) {
@@ -243,7 +268,8 @@ NiftiHeader read_nifti_header(const std::string& path) {
   header.grid = grid_of(path, fields);
   header.is_swapped = start.is_swapped;
   header.facts = facts_of(fields, header.grid);
-  if (std::isfinite(fields.scl_slope) && fields.scl_slope != 0) {
+  set_colors(path, fields, header);
+  if (std::isfinite(fields.scl_slope) && fields.scl_slope != 0 && !header.is_interleaved) {
     if (!std::isfinite(fields.scl_inter)) {
       throw IoError(path, "scl_inter",
                     "is " + std::to_string(fields.scl_inter) +

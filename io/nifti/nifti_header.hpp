@@ -63,10 +63,11 @@ struct NiftiHeader {
   Grid grid;
   PixelType type = PixelType::float32;  ///< as stored
   int components = 1;
-  std::int64_t steps = 1;     ///< along the axis of time
-  std::vector<double> times;  ///< one per step [s, or the unit of the axis]; empty: one step
-  bool is_swapped = false;    ///< samples are in the byte order that is not this machine's
-  double slope = 1;           ///< value = slope * sample + intercept
+  bool is_interleaved = false;  ///< components of a voxel follow each other: colors
+  std::int64_t steps = 1;       ///< along the axis of time
+  std::vector<double> times;    ///< one per step [s, or the unit of the axis]; empty: one step
+  bool is_swapped = false;      ///< samples are in the byte order that is not this machine's
+  double slope = 1;             ///< value = slope * sample + intercept
   double intercept = 0;
   std::string samples;                ///< the file that holds them
   bool is_gzip = false;               ///< that file

@@ -159,12 +159,21 @@ NiftiSamples::NiftiSamples(
 
 NiftiSamples::~NiftiSamples() = default;
 
+std::int64_t NiftiSamples::plane_count() const {
+  return header_.is_interleaved ? 1 : header_.components;
+}
+
+std::size_t NiftiSamples::plane_voxel_bytes() const {
+  return size_of(header_.type) *
+         static_cast<std::size_t>(header_.is_interleaved ? header_.components : 1);
+}
+
 std::int64_t NiftiSamples::plane_bytes() const {
-  return header_.grid.voxel_count() * static_cast<std::int64_t>(size_of(header_.type));
+  return header_.grid.voxel_count() * static_cast<std::int64_t>(plane_voxel_bytes());
 }
 
 std::int64_t NiftiSamples::end_offset() const {
-  return header_.data_offset + header_.components * header_.steps * plane_bytes();
+  return header_.data_offset + plane_count() * header_.steps * plane_bytes();
 }
 
 /// The file stores all steps of one component, then those of the next one.
@@ -179,7 +188,7 @@ double NiftiSamples::buffer_bytes() const {
 }
 
 double NiftiSamples::unpacked_bytes() const {
-  return header_.is_gzip ? static_cast<double>(plane_bytes() * header_.components) : 0;
+  return header_.is_gzip ? static_cast<double>(plane_bytes() * plane_count()) : 0;
 }
 
 void NiftiSamples::fail() const {
@@ -196,7 +205,7 @@ void NiftiSamples::read(const Region& region, void* out) {
   } else {
     source.emplace(header_.samples, header_.is_gzip, end_offset());
   }
-  for (std::size_t c = 0; c < static_cast<std::size_t>(header_.components); ++c) {
+  for (std::size_t c = 0; c < static_cast<std::size_t>(plane_count()); ++c) {
     read_component(*source, region, c, static_cast<std::byte*>(out));
   }
 }
@@ -207,7 +216,7 @@ void NiftiSamples::unpack() {
   auto unpacked = std::make_unique<ScratchFile>(folder);
   Source source(header_.samples, true, end_offset());
   std::vector<std::byte> part(nifti_part_bytes + 1);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(header_.components); ++c) {
+  for (std::size_t c = 0; c < static_cast<std::size_t>(plane_count()); ++c) {
     for (std::int64_t done = 0; done < plane_bytes();) {
       const auto bytes = std::min(std::ssize(part) - 1, plane_bytes() - done);
       const auto count = static_cast<std::size_t>(bytes);
@@ -228,7 +237,7 @@ void NiftiSamples::read_component(Source& source,
                                   const Region& region,
                                   std::size_t c,
                                   std::byte* out) const {
-  const std::size_t size = size_of(header_.type);
+  const std::size_t size = plane_voxel_bytes();
   const std::size_t voxel =
       size_of(header_.value_type()) * static_cast<std::size_t>(header_.components);
   const std::int64_t start =
@@ -251,7 +260,8 @@ void NiftiSamples::convert(std::byte* part,
                            std::size_t count,
                            std::size_t c,
                            std::byte* out) const {
-  const std::size_t size = size_of(header_.type);
+  const std::size_t size = plane_voxel_bytes();
+  if (header_.is_interleaved) return copy_strided(part, 1, out, 1, size, count);
   const auto components = static_cast<std::size_t>(header_.components);
   if (header_.is_swapped) swap_samples(size, part, count);
   const bool is_negated = map_.is_negated[c];

@@ -38,6 +38,9 @@ class NiftiSamples {
  private:
   class Source;
 
+  /// Parts of a file that hold a number, or a color, of every voxel: one per component.
+  std::int64_t plane_count() const;
+  std::size_t plane_voxel_bytes() const;
   std::int64_t plane_bytes() const;
   std::int64_t plane_offset(std::size_t component) const;
   std::int64_t end_offset() const;

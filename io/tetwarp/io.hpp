@@ -74,9 +74,9 @@ struct VolumeReadOptions {
   bool are_labels = false;
 };
 
-/// Reads the header of a volume file: VTKHDF ImageData, NIfTI, NRRD or MetaImage, by its content.
-/// The array of the latter three is called `values`, and their grids are in RAS; the steps of a
-/// series have times in seconds, where the header names a unit of time.
+/// Reads the header of a volume file: VTKHDF ImageData, NIfTI, NRRD, MetaImage, or an image of
+/// FreeSurfer, by its content. The array of all but the first is called `values`, and their grids
+/// are in RAS; the steps of a series have times in seconds, where the header names a unit of time.
 TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path,
                                                   const VolumeReadOptions& options = {});
 
@@ -221,9 +221,10 @@ enum class ChunkShape {
 };
 
 /// Writes a volume file region by region: a static one, or a temporal one step by step. A name that
-/// ends in .nii or .nii.gz is written as NIfTI, of one array, along the axes of its NiftiFacts; any
-/// other as VTKHDF ImageData. Blocks and series of NIfTI take their space on the disk twice until
-/// they are finished.
+/// ends in .nii or .nii.gz is written as NIfTI, of one array, along the axes of its NiftiFacts; one
+/// of has_image_name() in its format; any other as VTKHDF ImageData. Blocks and series of NIfTI,
+/// and series and packed files of other images take their space on the disk twice until they are
+/// finished.
 class TETWARP_IO_EXPORT BlockVolumeWriter {
  public:
   BlockVolumeWriter(const std::string& path,
@@ -285,7 +286,7 @@ enum class FileKind {
   hdf5,             ///< any other HDF5 file, also a damaged one
   nifti,            ///< NIfTI-1 or NIfTI-2, plain or gzip; also either file of a pair
   analyze,          ///< Analyze 7.5, header or samples
-  image,            ///< NRRD (.nrrd, .nhdr) or MetaImage (.mha, .mhd)
+  image,            ///< NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd) or FreeSurfer (.mgh, .mgz)
   unknown
 };
 template <>
@@ -294,7 +295,7 @@ TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of();
 /// True for names of NIfTI images that can be written: .nii and .nii.gz.
 TETWARP_IO_EXPORT bool has_nifti_name(const std::string& path);
 
-/// True for names of NRRD files and MetaImages that can be written: .nrrd and .mha.
+/// True for other names of images that can be written: .nrrd, .mha, .mhd, .mgh and .mgz.
 TETWARP_IO_EXPORT bool has_image_name(const std::string& path);
 
 /// The kind of a file, from its content. Throws IoError only when the file cannot be opened.

@@ -1,12 +1,14 @@
 /// @file transform_file.hpp
-/// Displacement fields and affine transforms of ITK, ANTs and NiftyReg.
+/// Displacement fields, affine transforms and splines of ITK, ANTs, NiftyReg and FSL.
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 
 #include <tetwarp/axes.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io_export.hpp>
+#include <tetwarp/names.hpp>
 #include <tetwarp/resample.hpp>
 
 namespace tetwarp {
@@ -16,26 +18,47 @@ struct TransformFile {
   Transform transform;
   std::string
       convention;  ///< for a line to print: "displacements along LPS axes in mm (intent ...)"
+  bool ends_with_field = false;  ///< what is beyond the field's grid has no place in the source
 };
 
-/// True for what read_transform() reads: names that end in .tfm, .txt or .mat, images (NIfTI,
-/// NRRD, MetaImage) of three components, and volumes with an array `tetwarp_displacement`.
-TETWARP_IO_EXPORT bool is_transform_file(const std::string& path);
+/// What the numbers of a warp field of FSL are.
+enum class FslWarp {
+  relative,  ///< displacements
+  absolute   ///< positions
+};
+template <>
+TETWARP_IO_EXPORT std::span<const EnumName<FslWarp>> names_of();
+
+/// Choices of read_transform().
+struct TransformReadOptions {
+  /// Of the components of a field in an image, instead of those that its format states.
+  std::optional<Axes> axes = {};
+  /// Says that a NIfTI image is a warp field of FSL, and what its numbers are.
+  std::optional<FslWarp> fsl = {};
+  std::string image = {};  ///< file of the image to warp, to whose voxels fields of FSL lead
+};
+
+/// True for what read_transform() reads: names that end in .tfm, .txt or .mat, HDF5 files of ITK,
+/// images (NIfTI, NRRD, MetaImage) of three components, warp fields of FSL, and volumes with an
+/// array `tetwarp_displacement`.
+TETWARP_IO_EXPORT bool is_transform_file(const std::string& path,
+                                         const TransformReadOptions& options = {});
 
 /// Reads a transform from positions of the output to positions in the source, as resamplers take
 /// it, and turns it to RAS.
 ///
-/// - ITK's text (.tfm, .txt) and MATLAB files (.mat): affine, rigid, similarity, scale and
-///   translation transforms and composites of these, in LPS
+/// - ITK's text (.tfm, .txt), MATLAB (.mat) and HDF5 files: affine, rigid, similarity, scale and
+///   translation transforms, displacement fields, cubic B-splines and composites of these, in LPS
 /// - NIfTI displacement fields. The intent code states the axes of the components: VECTOR is LPS
 /// and mm
 ///   (ITK, ANTs), DISPVECT is RAS in the header's unit, VECTOR named NREG_TRANS is NiftyReg's:
 ///   displacements or positions in RAS. Any other needs `axes`
+/// - Warp fields of FSL (intent 2006): relative or absolute, in scaled voxels of the field's and
+///   the image's grid
 /// - NRRD files and MetaImages of three components: LPS, as ITK and 3D Slicer write them
 /// - the array `tetwarp_displacement` of a VTKHDF volume, as `tetwarp warp` writes it
-/// @param axes  of the components of a field in an image, instead of those that its format states
 /// @throws IoError  on other transforms, files that do not tell their convention, damaged files
 TETWARP_IO_EXPORT TransformFile read_transform(const std::string& path,
-                                               const std::optional<Axes>& axes = {});
+                                               const TransformReadOptions& options = {});
 
 }  // namespace tetwarp

@@ -1,17 +1,15 @@
 /// @file itk_transform.cpp
-/// Parses files, and computes matrices from parameters as ITK's classes do.
+/// Computes matrices, fields and splines from parameters as ITK's classes do.
 #include "io/transforms/itk_transform.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <sstream>
+#include <iterator>
+#include <stdexcept>
 #include <tetwarp/error.hpp>
-
-#include "io/files/text_file.hpp"
+#include <utility>
 
 namespace tetwarp {
 namespace {
@@ -111,116 +109,132 @@ std::string listed_kinds() {
   return text;
 }
 
-/// y = M (x - c) + c + t, in LPS.
-AffineTransform affine_of(const std::string& path, const ItkTransform& transform) {
-  const std::string name = transform.type.substr(0, transform.type.find('_'));
-  const Kind* const kind = std::find_if(std::begin(kinds), std::end(kinds),
-                                        [&](const Kind& known) { return name == known.name; });
-  if (kind == std::end(kinds) || !transform.type.ends_with("_3_3")) {
-    throw IoError(path, transform.type,
-                  "is no affine transform of three dimensions; read are " + listed_kinds() +
-                      ". Convert others to a displacement field, for example by SimpleITK's "
-                      "TransformToDisplacementField");
-  }
+/// Throws about a type that is not read.
+[[noreturn]] void refuse(const std::string& path, const std::string& type) {
+  throw IoError(path, type,
+                "is no transform of three dimensions that is read; these are " + listed_kinds() +
+                    ", DisplacementFieldTransform, cubic BSplineTransform and composites of them. "
+                    "Convert others to a displacement field, for example by SimpleITK's "
+                    "TransformToDisplacementField");
+}
+
+void check_finite(const std::string& path,
+                  const std::string& type,
+                  const std::vector<double>& numbers,
+                  std::size_t expected,
+                  const char* what) {
+  const bool is_finite = std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
+  if (numbers.size() == expected && is_finite) return;
+  throw IoError(path, type,
+                "expected " + std::to_string(expected) + " finite " + what +
+                    (is_finite ? ", got " + std::to_string(numbers.size()) : ""));
+}
+
+/// From LPS to RAS.
+AffineTransform in_ras(AffineTransform affine) {
+  for (const std::size_t mixed : {2, 5, 6, 7}) affine.matrix[mixed] = 0 - affine.matrix[mixed];
+  for (const std::size_t axis : {0, 1}) affine.offset[axis] = 0 - affine.offset[axis];
+  return affine;
+}
+
+/// y = M (x - c) + c + t.
+AffineTransform affine_of(const std::string& path,
+                          const ItkTransform& transform,
+                          const Kind& kind) {
   const std::vector<double>& p = transform.parameters;
-  const bool is_finite = std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); });
-  if (p.size() != kind->parameter_count || !is_finite) {
-    throw IoError(path, transform.type,
-                  "expected " + std::to_string(kind->parameter_count) + " finite parameters");
-  }
-  AffineTransform affine{kind->matrix(transform), {0, 0, 0}};
+  check_finite(path, transform.type, p, kind.parameter_count, "parameters");
+  AffineTransform affine{kind.matrix(transform), {0, 0, 0}};
   Point3 center{0, 0, 0};
   if (transform.fixed.size() >= 3) std::copy_n(transform.fixed.begin(), 3, center.begin());
   const Point3 turned = product(affine.matrix, center);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     affine.offset[axis] = center[axis] - turned[axis];
-    if (kind->translation != no_translation) affine.offset[axis] += p[kind->translation + axis];
+    if (kind.translation != no_translation) affine.offset[axis] += p[kind.translation + axis];
   }
-  return affine;
+  return in_ras(affine);
 }
 
-std::vector<double> numbers_in(const std::string& path, const std::string& text) {
-  std::vector<double> numbers;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    double number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size()) {
-      throw IoError(path, "", "'" + word + "' is no number");
+/// The grid of fixed parameters: sizes, origin, spacing, direction by rows, in LPS.
+Grid grid_of(const std::string& path, const ItkTransform& transform) {
+  const std::vector<double>& f = transform.fixed;
+  check_finite(path, transform.type, f, 18, "fixed parameters (size, origin, spacing, direction)");
+  Grid grid;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(f[axis] >= 1 && f[axis] <= 0x1p30) || f[axis] != std::floor(f[axis])) {
+      throw IoError(path, transform.type,
+                    "has a size of " + std::to_string(f[axis]) + ", expected 1 to 2^30");
     }
-    numbers.push_back(number);
+    grid.dims[axis] = static_cast<std::int64_t>(f[axis]);
+    const double sign = axis < 2 ? -1 : 1;
+    grid.origin[axis] = sign * f[3 + axis];
+    grid.spacing[axis] = f[6 + axis];
+    for (std::size_t n = 0; n < 3; ++n) grid.direction[3 * axis + n] = sign * f[9 + 3 * axis + n];
   }
-  return numbers;
+  try {
+    check_grid(grid, "its grid");
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, transform.type, error.what());
+  }
+  check_finite(path, transform.type, transform.parameters,
+               3 * static_cast<std::size_t>(grid.voxel_count()),
+               "parameters, three per grid point");
+  return grid;
+}
+
+DisplacementField field_of(const std::string& path, const ItkTransform& transform) {
+  DisplacementField field{grid_of(path, transform), {}};
+  field.displacement.reserve(transform.parameters.size());
+  for (std::size_t n = 0; n < transform.parameters.size(); ++n) {
+    const double number = transform.parameters[n];
+    field.displacement.push_back(static_cast<float>(n % 3 < 2 ? 0 - number : number));
+  }
+  return field;
+}
+
+/// ITK stores all x coefficients, then y, then z.
+BSplineTransform spline_of(const std::string& path, const ItkTransform& transform) {
+  BSplineTransform spline{grid_of(path, transform), {}};
+  if (std::ranges::min(spline.grid.dims) < 4) {
+    throw IoError(path, transform.type, "has fewer than 4 coefficients along an axis");
+  }
+  const std::size_t count = transform.parameters.size() / 3;
+  spline.coefficients.resize(transform.parameters.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t n = 0; n < count; ++n) {
+      const double number = transform.parameters[axis * count + n];
+      spline.coefficients[3 * n + axis] = axis < 2 ? 0 - number : number;
+    }
+  }
+  return spline;
+}
+
+SingleTransform single_of(const std::string& path, const ItkTransform& transform) {
+  const std::string name = transform.type.substr(0, transform.type.find('_'));
+  if (!transform.type.ends_with("_3_3")) refuse(path, transform.type);
+  if (name.ends_with("DisplacementFieldTransform")) return field_of(path, transform);
+  if (name == "BSplineTransform") return spline_of(path, transform);
+  const Kind* const kind = std::find_if(std::begin(kinds), std::end(kinds),
+                                        [&](const Kind& known) { return name == known.name; });
+  if (kind == std::end(kinds)) refuse(path, transform.type);
+  return affine_of(path, transform, *kind);
+}
+
+/// Appends a transform that follows; two affine ones become one.
+void append(std::vector<SingleTransform>& links, SingleTransform next) {
+  auto* const last = links.empty() ? nullptr : std::get_if<AffineTransform>(&links.back());
+  const auto* const affine = std::get_if<AffineTransform>(&next);
+  if (last == nullptr || affine == nullptr) {
+    links.push_back(std::move(next));
+    return;
+  }
+  AffineTransform both{product(affine->matrix, last->matrix),
+                       product(affine->matrix, last->offset)};
+  for (std::size_t axis = 0; axis < 3; ++axis) both.offset[axis] += affine->offset[axis];
+  *last = both;
 }
 }  // namespace
 
-std::vector<ItkTransform> read_itk_text(const std::string& path) {
-  const std::string text = read_text(path);
-  if (!text.starts_with("#Insight Transform File")) {
-    throw IoError(path, "",
-                  "is no transform file of ITK, which begins with '#Insight Transform File'; a "
-                  "matrix alone does not tell its axes and direction");
-  }
-  std::vector<ItkTransform> transforms;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t colon = line.find(':');
-    if (line.empty() || line[0] == '#' || colon == std::string::npos) continue;
-    const std::string key = line.substr(0, colon), value = line.substr(colon + 1);
-    if (key == "Transform") {
-      const std::size_t begin = value.find_first_not_of(' ');
-      const std::size_t end = value.find_last_not_of(" \r") + 1;
-      if (begin == std::string::npos) throw IoError(path, "", "names no type of a transform");
-      transforms.push_back({value.substr(begin, end - begin), {}, {}});
-    } else if (!transforms.empty() && key == "Parameters") {
-      transforms.back().parameters = numbers_in(path, value);
-    } else if (!transforms.empty() && key == "FixedParameters") {
-      transforms.back().fixed = numbers_in(path, value);
-    }
-  }
-  return transforms;
-}
-
-/// Level 4 files: for each matrix a head of five numbers, a name, and its entries.
-std::vector<ItkTransform> read_itk_matlab(const std::string& path) {
-  const std::string bytes = read_text(path);
-  std::vector<ItkTransform> transforms;
-  const auto damaged = [&] {
-    return IoError(path, "",
-                   "is no MATLAB file (level 4) that ITK or ANTs wrote; a matrix alone does not "
-                   "tell its axes and direction");
-  };
-  for (std::size_t at = 0; at < bytes.size();) {
-    std::array<std::int32_t, 5> head;  // type, rows, columns, imaginary, bytes of the name
-    if (bytes.size() - at < sizeof head) throw damaged();
-    std::memcpy(head.data(), bytes.data() + at, sizeof head);
-    at += sizeof head;
-    const bool is_single = head[0] % 100 == 10;
-    const bool is_sound = (head[0] % 100 == 0 || is_single) && head[0] >= 0 && head[0] < 200 &&
-                          head[1] >= 0 && head[2] >= 0 && head[1] < 1000 && head[2] < 1000 &&
-                          head[3] == 0 && head[4] > 0 && head[4] < 256;
-    const std::size_t count = is_sound ? static_cast<std::size_t>(head[1] * head[2]) : 0;
-    const std::size_t size = is_single ? 4 : 8, name_size = static_cast<std::size_t>(head[4]);
-    if (!is_sound || bytes.size() - at < name_size + count * size) throw damaged();
-    const std::string name(bytes.data() + at, strnlen(bytes.data() + at, name_size));
-    at += name_size;
-    std::vector<double> numbers(count);
-    for (double& number : numbers) {
-      float narrow = 0;
-      std::memcpy(is_single ? static_cast<void*>(&narrow) : &number, bytes.data() + at, size);
-      if (is_single) number = static_cast<double>(narrow);
-      at += size;
-    }
-    if (name != "fixed") {
-      transforms.push_back({name, numbers, {}});
-    } else if (!transforms.empty()) {
-      transforms.back().fixed = numbers;
-    }
-  }
-  return transforms;
-}
-
-AffineTransform affine_of(const std::string& path, const std::vector<ItkTransform>& transforms) {
+Transform transform_of(const std::string& path, const std::vector<ItkTransform>& transforms) {
   if (transforms.empty()) throw IoError(path, "", "holds no transform");
   const bool is_composite = transforms.front().type.starts_with("CompositeTransform");
   if (!is_composite && transforms.size() > 1) {
@@ -228,16 +242,13 @@ AffineTransform affine_of(const std::string& path, const std::vector<ItkTransfor
                   "holds " + std::to_string(transforms.size()) +
                       " transforms and not how they follow each other; write a composite");
   }
-  AffineTransform all;
-  for (std::size_t t = is_composite ? 1 : 0; t < transforms.size(); ++t) {
-    const AffineTransform one = affine_of(path, transforms[t]);  // applied before those so far
-    const Point3 moved = product(all.matrix, one.offset);
-    for (std::size_t axis = 0; axis < 3; ++axis) all.offset[axis] += moved[axis];
-    all.matrix = product(all.matrix, one.matrix);
+  TransformChain chain;
+  for (std::size_t t = transforms.size(); t > (is_composite ? 1U : 0U); --t) {
+    append(chain.links, single_of(path, transforms[t - 1]));
   }
-  for (const std::size_t mixed : {2, 5, 6, 7}) all.matrix[mixed] = 0 - all.matrix[mixed];
-  for (const std::size_t axis : {0, 1}) all.offset[axis] = 0 - all.offset[axis];
-  return all;
+  if (chain.links.empty()) return AffineTransform{};
+  if (chain.links.size() > 1) return chain;
+  return std::visit([](auto& only) -> Transform { return std::move(only); }, chain.links.front());
 }
 
 }  // namespace tetwarp

@@ -12,20 +12,11 @@ namespace tetwarp {
 struct ItkTransform {
   std::string type;                ///< "AffineTransform_double_3_3"
   std::vector<double> parameters;  ///< numbers that ITK optimizes
-  std::vector<double> fixed;       ///< others: the center
+  std::vector<double> fixed;       ///< others: a center, or a grid
 };
 
-/// The transforms of a text file (.tfm, .txt), in its order.
-/// @throws IoError  when it is none, or damaged
-std::vector<ItkTransform> read_itk_text(const std::string& path);
-
-/// The transforms of a MATLAB file (.mat).
-/// @throws IoError  as above
-std::vector<ItkTransform> read_itk_matlab(const std::string& path);
-
-/// The affine transform of a file, turned from LPS to RAS. A composite applies its last transform
-/// first.
-/// @throws IoError  when the file holds several without a composite, or one that is not affine
-AffineTransform affine_of(const std::string& path, const std::vector<ItkTransform>& transforms);
+/// The transform of a file, turned from LPS to RAS. A composite applies its last transform first.
+/// @throws IoError  when the file holds several without a composite, or one that is not read
+Transform transform_of(const std::string& path, const std::vector<ItkTransform>& transforms);
 
 }  // namespace tetwarp

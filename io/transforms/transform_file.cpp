@@ -4,22 +4,36 @@
 
 #include <algorithm>
 #include <tetwarp/io.hpp>
+#include <utility>
+#include <variant>
 
 #include "io/files/extension.hpp"
 #include "io/transforms/field_file.hpp"
+#include "io/transforms/fsl_field.hpp"
 #include "io/transforms/itk_transform.hpp"
+#include "io/transforms/itk_transform_files.hpp"
 
 namespace tetwarp {
 namespace {
 bool has_transform_name(const std::string& path) {
   return has_extension(path, ".tfm") || has_extension(path, ".txt") || has_extension(path, ".mat");
 }
+
+const char* what_of(const Transform& transform) {
+  if (std::holds_alternative<AffineTransform>(transform)) return "affine transform";
+  if (std::holds_alternative<DisplacementField>(transform)) return "displacement field";
+  if (std::holds_alternative<BSplineTransform>(transform)) return "B-spline";
+  return "composite";
+}
 }  // namespace
 
-bool is_transform_file(const std::string& path) {
+bool is_transform_file(const std::string& path, const TransformReadOptions& options) {
   if (has_transform_name(path)) return true;
   switch (kind_of(path)) {
-    case FileKind::nifti:
+    case FileKind::nifti: {
+      const NiftiHeader header = read_nifti_header(path);
+      return header.components == 3 || is_fsl_field(header, options);
+    }
     case FileKind::image:
       return read_volume_header(path).arrays.front().components == 3;
     case FileKind::volume: {
@@ -28,21 +42,33 @@ bool is_transform_file(const std::string& path) {
         return array.name == "tetwarp_displacement";
       });
     }
+    case FileKind::hdf5:
+      return is_itk_hdf5(path);
     default:
       return false;
   }
 }
 
-TransformFile read_transform(const std::string& path, const std::optional<Axes>& axes) {
+TransformFile read_transform(const std::string& path, const TransformReadOptions& options) {
   if (!has_transform_name(path)) {
-    const FileKind kind = kind_of(path);
-    return kind == FileKind::nifti   ? read_nifti_field(path, axes)
-           : kind == FileKind::image ? read_image_field(path, axes)
-                                     : read_volume_field(path);
+    switch (kind_of(path)) {
+      case FileKind::nifti:
+        return is_fsl_field(read_nifti_header(path), options)
+                   ? read_fsl_field(path, options)
+                   : read_nifti_field(path, options.axes);
+      case FileKind::image:
+        return read_image_field(path, options.axes);
+      case FileKind::hdf5:
+        break;
+      default:
+        return read_volume_field(path);
+    }
   }
-  const bool is_matlab = has_extension(path, ".mat");
-  return {affine_of(path, is_matlab ? read_itk_matlab(path) : read_itk_text(path)),
-          "affine transform of ITK along LPS axes"};
+  Transform transform = transform_of(path, has_extension(path, ".mat") ? read_itk_matlab(path)
+                                           : has_transform_name(path)  ? read_itk_text(path)
+                                                                       : read_itk_hdf5(path));
+  std::string convention = std::string(what_of(transform)) + " of ITK along LPS axes";
+  return {std::move(transform), std::move(convention)};
 }
 
 }  // namespace tetwarp

@@ -4,6 +4,7 @@
 #include <tetwarp/io.hpp>
 
 #include "io/files/extension.hpp"
+#include "io/files/numbered_files.hpp"
 #include "io/h5/h5.hpp"
 #include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_read.hpp"
@@ -38,6 +39,7 @@ bool is_analyze(const std::string& header_path, const NiftiStart& start) {
 }  // namespace
 
 FileKind kind_of(const std::string& path) {
+  if (is_pattern(path)) return FileKind::unknown;  // of meshes, which their names tell
   const h5::Silence silence;
   const std::string header_path = nifti_header_path(path);
   const NiftiStart start = read_nifti_start(header_path);

@@ -1,78 +1,30 @@
 /// @file row_resample.hpp
-/// Stage "resample": samples of the source where an affine map or a displacement field takes the
-/// voxels of a row.
+/// Stage "resample": samples of the source where transforms take the voxels of a row.
 #pragma once
 #include <cstdint>
 
 #include "kernels/base/hd.hpp"
+#include "kernels/base/view.hpp"
 #include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/transform_link.hpp"
 
 namespace tetwarp {
 
-/// An affine map between index spaces, or from the world to one.
-struct IndexAffine {
-  double linear[3][3];
-  double offset[3];
-
-  TETWARP_HD void map(const double* x, double* y) const {
-    for (int row = 0; row < 3; ++row) {
-      const double* const m = linear[row];
-      y[row] = m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + offset[row];
-    }
-  }
-};
-
-/// Vectors on a grid.
-struct FieldView {
-  const float* vectors = nullptr;  ///< [k][j][i][3], world; null: there is no field
-  std::int64_t dims[3] = {0, 0, 0};
-
-  TETWARP_HD const float* at(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    return vectors + 3 * (i + dims[0] * (j + dims[1] * k));
-  }
-
-  /// The vector at an index position, linear between centers, constant for the last half voxel.
-  /// @returns false beyond that; the vector is then zero
-  TETWARP_HD bool sample(const double* index, double* vector) const {
-    std::int64_t lower[3], upper[3];
-    double fraction[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      vector[axis] = 0;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const double last = static_cast<double>(dims[axis] - 1);
-      if (!(index[axis] >= -0.5 && index[axis] <= last + 0.5)) return false;
-      const double near = min_of(max_of(index[axis], 0.0), last);
-      lower[axis] = static_cast<std::int64_t>(near);
-      upper[axis] = min_of(lower[axis] + 1, dims[axis] - 1);
-      fraction[axis] = near - static_cast<double>(lower[axis]);
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-      double weight = 1;
-      std::int64_t place[3];
-      for (int axis = 0; axis < 3; ++axis) {
-        const bool is_upper = (corner >> axis & 1) != 0;
-        weight *= is_upper ? fraction[axis] : 1 - fraction[axis];
-        place[axis] = is_upper ? upper[axis] : lower[axis];
-      }
-      if (weight == 0) continue;  // so that a NaN there does not spread
-      const float* const v = at(place[0], place[1], place[2]);
-      for (int axis = 0; axis < 3; ++axis) vector[axis] += weight * static_cast<double>(v[axis]);
-    }
-    return true;
-  }
-};
-
-/// From output voxels to positions in the source's index space.
+/// From output voxels to positions in the source's index space: an affine map, to which a
+/// displacement may be added.
 struct ResampleMap {
-  IndexAffine to_source;  ///< output index to source index, without the field
-  FieldView field;
-  bool is_field_grid;       ///< the field is on the output's grid
-  IndexAffine to_field;     ///< output index to field index
-  double from_world[3][3];  ///< a vector of the world in source voxels
-  bool only_in_field;       ///< positions beyond the field are beyond the source
+  IndexAffine to_source;            ///< output index to source index, without displacements
+  FieldView field;                  ///< displacements of one field
+  View<const TransformLink> links;  ///< or of transforms that follow each other; size 0: none
+  IndexAffine to_world;             ///< output index to world, for `links`
+  bool is_field_grid;               ///< the field is on the output's grid
+  IndexAffine to_field;             ///< output index to field index
+  double from_world[3][3];          ///< a vector of the world in source voxels
+  bool only_in_field;               ///< positions beyond a field are beyond the source
 
-  /// The displacement of a voxel of a field that is there.
+  TETWARP_HD bool has_displacements() const { return field.vectors != nullptr || links.size > 0; }
+
+  /// The displacement of a voxel, where there are displacements.
   /// @returns false for background
   TETWARP_HD bool field_vector(std::int64_t i,
                                std::int64_t j,
@@ -85,9 +37,21 @@ struct ResampleMap {
     }
     const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
                              static_cast<double>(k)};
+    if (links.size > 0) return link_vector(voxel, vector);
     double index[3];
     to_field.map(voxel, index);
     return field.sample(index, vector) || !only_in_field;
+  }
+
+  /// The displacement by `links`.
+  TETWARP_HD bool link_vector(const double* voxel, double* vector) const {
+    double start[3], x[3];
+    to_world.map(voxel, start);
+    for (int axis = 0; axis < 3; ++axis) x[axis] = start[axis];
+    bool is_inside = true;
+    for (std::int64_t n = 0; n < links.size; ++n) is_inside = links[n].move(x) && is_inside;
+    for (int axis = 0; axis < 3; ++axis) vector[axis] = x[axis] - start[axis];
+    return is_inside || !only_in_field;
   }
 
   /// @returns false for background
@@ -95,7 +59,7 @@ struct ResampleMap {
     const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
                              static_cast<double>(k)};
     to_source.map(voxel, x);
-    if (field.vectors == nullptr) return true;
+    if (!has_displacements()) return true;
     double vector[3];
     if (!field_vector(i, j, k, vector)) return false;
     for (int row = 0; row < 3; ++row) {

@@ -63,8 +63,7 @@ struct VoxelExtendOp {
     job.frame.set_row_start(n / stretches_per_row(), voxel);
     voxel[0] += static_cast<int>(n % stretches_per_row()) * stretch;
     const int past = min_of(voxel[0] + stretch, job.frame.end[0]);
-    NearestSurfacePoint nearest;
-    nearest.triangle = -1;
+    NearestSurfacePoint nearest = {0, -1, {0, 0, 0}};
     for (; voxel[0] < past; ++voxel[0]) {
       const std::int64_t at = job.frame.offset_of(voxel[0], voxel[1], voxel[2]);
       if (owners[at] < 0) write(voxel, at, nearest);

@@ -108,6 +108,21 @@ def test_state_is_not_read_within_a_step():
         simulator.step(progress=lambda *_: simulator.positions("box") is None)
 
 
+def test_handles_are_added_while_a_scene_runs():
+    simulator = tetwarp.Simulator(_beam())
+    simulator.step(2)
+    end = simulator.positions("beam")[:, 0].argmax()
+    center = simulator.positions("beam")[end]
+
+    simulator.add_handle("finger", "beam", center, stiffness=5000)
+    simulator.move_handle("finger", (0, 0, 0.1))
+    simulator.step(10)
+
+    assert simulator.positions("beam")[end, 2] > center[2] + 0.01
+    with pytest.raises(ValueError, match="handle.stiffness"):
+        simulator.add_handle("finger", "beam", center, stiffness=0)
+
+
 def test_handles_are_moved():
     scene = _beam(handles=[{
         "name": "lift", "handle": "beam", "select": {"half_space": [1, 0, 0, 0.499]},

@@ -5,6 +5,17 @@ Volumes are arrays of shape (z, y, x) or (z, y, x, components) in C order, meshe
 and (m, 4) or (m, 8) cells. See docs/python.md.
 """
 
+from ._autograd import autograd_warp
+from ._bridges import (
+    mesh_from,
+    to_meshio,
+    to_nibabel,
+    to_pyvista,
+    to_sitk,
+    to_sitk_transform,
+    volume_from,
+)
+from ._certify import Certificate, certify
 from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
 from ._core import Cancelled, CudaError, IoError, available_backends
 from ._core import version as __version__
@@ -26,6 +37,7 @@ from ._warp import Warper, WarpResult, warp
 
 __all__ = [
     "Cancelled",
+    "Certificate",
     "ContactProblem",
     "ContactSolution",
     "ContactSolver",
@@ -45,13 +57,16 @@ __all__ = [
     "WarpOperator",
     "WarpResult",
     "Warper",
+    "autograd_warp",
     "available_backends",
     "boundary_surface",
+    "certify",
     "deform",
     "displacement_field",
     "isosurface",
     "jacobian_determinant",
     "lattice_mesh",
+    "mesh_from",
     "phantom",
     "rasterize",
     "read",
@@ -60,7 +75,13 @@ __all__ = [
     "shipped_scenes",
     "solve_contacts",
     "strain",
+    "to_meshio",
+    "to_nibabel",
+    "to_pyvista",
+    "to_sitk",
+    "to_sitk_transform",
     "transform_points",
+    "volume_from",
     "warp",
     "write",
 ]

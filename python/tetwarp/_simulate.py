@@ -273,6 +273,28 @@ class Simulator:
         """Von Mises stress of every tetrahedron of a body [Pa]."""
         return self._simulator.stresses(self._index(body))
 
+    def add_handle(
+        self,
+        name: str,
+        body: BodyName,
+        center: Any,
+        stiffness: float,
+        radius: float = 0.0,
+        damping: float = 0.0,
+    ) -> None:
+        """Adds a handle, or replaces one of its name that was added: springs between anchors and the
+        nodes of a body within the radius of a place now [m], or else the nearest one; of a rigid
+        body the point at that place. Stiffness [N/m] and damping [N s/m] are totals. Raises
+        ValueError naming what is wrong."""
+        self._simulator.add_handle(
+            name,
+            self.names[self._index(body)],
+            vector_of(center, "center"),
+            float(radius),
+            float(stiffness),
+            float(damping),
+        )
+
     def move_handle(self, name: str, displacement: Any) -> None:
         """Moves the anchors of a handle from where they started, instead of its path [m]."""
         self._simulator.move_handle(name, vector_of(displacement, "displacement"))

@@ -87,8 +87,10 @@ TEST(BadFormats, MeshesThatContradictThemselves) {
             "l.msh: Gmsh cannot read it: Wrong node index 99"},
            {"m.msh", nodes + "$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n",
             "m.msh: holds no tetrahedron or hexahedron: damaged, or a surface mesh"},
-           {"n.msh", nodes + "$Elements\n1\n1 6 2 1 1 1 2 3 4 5 6\n$EndElements\n",
-            "n.msh: cell 1 is a Prism 6, expected tetrahedra of four nodes and hexahedra of eight"},
+           {"n.msh",
+            nodes + "$Elements\n1\n1 12 2 1 1 1 2 3 4 5 6 7 8 1 2 3 4 5 6 7 8 1 2 3 4 5 6 7 8 1 2 "
+                    "3\n$EndElements\n",
+            "n.msh: cell 1 is a Hexahedron 27, expected tetrahedra of four or ten nodes"},
            {"o.msh", gmsh + data + "3\n2\n1 0 0 0\n2 0 0 0\n$EndNodeData\n",
             "o.msh: displacement: step 0 has no data of node 3, which cells have"},
            {"p.msh", gmsh + data + "1\n2\n1 0\n2 0\n$EndNodeData\n",

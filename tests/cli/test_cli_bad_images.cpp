@@ -66,7 +66,7 @@ TEST(BadImages, HeadersThatContradictThemselves) {
        "sform: holds a number that is not"},
       {[](auto& h) { h.qform_code = 1, h.qoffset_x = infinite; }, "qform: holds a number that is"},
       {[](auto& h) { h.qform_code = 1, h.quatern_c = not_a_number; }, "qform: holds a number"},
-      {[](auto& h) { h.datatype = DT_RGB24; }, "datatype: is 128 (RGB24), expected integers or"},
+      {[](auto& h) { h.datatype = DT_RGB24; }, "bitpix: is 32, but colors have 24"},
       {[](auto& h) { h.datatype = DT_COMPLEX64; }, "datatype: is 32 (COMPLEX64), expected"},
       {[](auto& h) { h.datatype = 0; }, "datatype: is 0 (UNKNOWN), expected integers or floats"},
       {[](auto& h) { h.bitpix = 16; }, "bitpix: is 16, but samples of datatype 16 (float32)"},

@@ -112,7 +112,7 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
            {warp_to("volume.vtkhdf"), "is also an input"},
            {warp_to("./folder.vtkhdf/../mesh.vtkhdf"), "is also an input"},
            {warp_to("folder.vtkhdf"), "is a folder"},
-           {warp_to("out.vti"), ".vtkhdf, .hdf, .h5, .nii, .nii.gz, .nrrd or .mha"},
+           {warp_to("out.vti"), ".nrrd, .mha, .mhd, .mgh or .mgz"},
            {{"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--report",
              "volume.vtkhdf"},
             "is also an input"},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/files/sha256.hpp"
 #include "tests/support/cli_scene.hpp"
 
 namespace tetwarp::test {
@@ -175,6 +176,99 @@ TEST_F(Batch, CountsWhatResumeSkips) {
 
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(result.out.ends_with("1 done, 0 failed, 1 skipped\n")) << result.out;
+}
+
+/// One row per job: cells that are empty set no option, quotes hold commas.
+TEST_F(Batch, ReadsCsv) {
+  write_text(scene / "jobs/jobs.csv",
+             "volume,mesh,output,steps,temporal,roi\r\n"
+             "../volume.vtkhdf,../mesh.vtkhdf,a.vtkhdf,0,,\"0:2,0:2,0:2\"\n"
+             "\n"
+             "../volume.vtkhdf , ../mesh.vtkhdf,b.vtkhdf,,true,\n");
+  const CommandResult result = run_command(scene, {"warp", "--batch", "jobs/jobs.csv"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_volume_header(scene / "jobs/a.vtkhdf").grid.dims[1], 2);
+  EXPECT_EQ(read_volume_header(scene / "jobs/b.vtkhdf").times.size(), 4u);
+}
+
+TEST_F(Batch, RefusesDamagedCsvInOneLine) {
+  for (const std::string text :
+       {"", "volume,mesh,output\n", "volume,mesh\na,b,c\n", "volume,mesh\n\"a,b\n"}) {
+    write_text(scene / "jobs/bad.csv", text);
+    const CommandResult result = run_command(scene, {"warp", "--batch", "jobs/bad.csv"});
+
+    EXPECT_EQ(result.exit_code, 1) << text;
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  }
+}
+
+TEST_F(Batch, MakesAJobOfEachFileThatAPatternMatches) {
+  fs::copy(scene / "volume.vtkhdf", scene / "jobs/ct_10.vtkhdf");
+  fs::copy(scene / "volume.vtkhdf", scene / "jobs/ct_9.vtkhdf");
+  const CommandResult result =
+      run(R"({"jobs": [{"volume": "ct_*.vtkhdf", "mesh": "../mesh.vtkhdf", "steps": 0,
+                        "output": "out/warped_*.vtkhdf"}]})",
+          {"--report", "report.json"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(exists("jobs/out/warped_9.vtkhdf"));
+  EXPECT_TRUE(exists("jobs/out/warped_10.vtkhdf"));
+  const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
+  ASSERT_EQ(report["jobs"].size(), 2u);
+  EXPECT_EQ(report["jobs"][0]["output"], "jobs/out/warped_9.vtkhdf");
+  EXPECT_EQ(run(R"({"jobs": [{"volume": "no_*.vtkhdf", "mesh": "m", "output": "*"}]})").exit_code,
+            1);
+}
+
+/// The files are those of jobs one after the other; a job that fails does not stop the others.
+TEST_F(Batch, RunsJobsBesideEachOther) {
+  const std::string jobs =
+      batch_of({job("a.vtkhdf", R"(, "steps": 0)"), job("b.vtkhdf", R"(, "steps": 99)"),
+                job("c.vtkhdf", R"(, "steps": 1)"), job("d.vtkhdf", R"(, "filtre": "nearest")")});
+  EXPECT_EQ(run(jobs).exit_code, 1);
+  const std::string a = text_of(scene / "jobs/a.vtkhdf"), c = text_of(scene / "jobs/c.vtkhdf");
+  fs::remove(scene / "jobs/a.vtkhdf");
+  fs::remove(scene / "jobs/c.vtkhdf");
+
+  const CommandResult result = run(jobs, {"--jobs", "3", "--report", "report.json"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.out.ends_with("2 done, 2 failed, 0 skipped\n")) << result.out;
+  EXPECT_NE(result.err.find("4 jobs, up to 3 at a time, take up to "), std::string::npos)
+      << result.err;
+  EXPECT_NE(result.err.find("tetwarp: job 2: "), std::string::npos) << result.err;
+  EXPECT_EQ(text_of(scene / "jobs/a.vtkhdf"), a);
+  EXPECT_EQ(text_of(scene / "jobs/c.vtkhdf"), c);
+  const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
+  EXPECT_EQ(report["status"], "failed");
+  EXPECT_EQ(report["jobs_done"], 2);
+  ASSERT_EQ(report["jobs"].size(), 4u);
+  for (const auto& one : report["jobs"]) {
+    EXPECT_EQ(one["status"], one["job"] == 1 || one["job"] == 3 ? "done" : "failed") << one;
+  }
+  EXPECT_TRUE(
+      run(jobs, {"--jobs", "2", "--resume"}).out.ends_with("0 done, 2 failed, 2 skipped\n"));
+  EXPECT_EQ(
+      run_command(scene, {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "x.vtkhdf", "--jobs", "2"})
+          .exit_code,
+      2);
+}
+
+/// Input and output are named with the hash that sha256sum prints.
+TEST_F(Batch, WritesWhatOutputsWereMadeFrom) {
+  const CommandResult result =
+      run(batch_of({job("a.vtkhdf", R"(, "steps": 0, "filter": "nearest")")}), {"--provenance"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto facts = nlohmann::json::parse(text_of(scene / "jobs/a.vtkhdf.json"));
+  EXPECT_EQ(facts["options"]["filter"], "nearest");
+  EXPECT_EQ(facts["backend"].is_string(), true);
+  ASSERT_EQ(facts["inputs"].size(), 2u);
+  EXPECT_EQ(facts["inputs"][0]["role"], "volume");
+  EXPECT_EQ(facts["inputs"][1]["role"], "mesh");
+  EXPECT_EQ(facts["inputs"][1]["sha256"], sha256_of_file(scene / "mesh.vtkhdf"));
+  EXPECT_EQ(facts["output"]["sha256"], sha256_of_file(scene / "jobs/a.vtkhdf"));
 }
 
 TEST_F(Batch, NamesThePlaceWhereTheFileIsNoJson) {

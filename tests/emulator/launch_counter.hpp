@@ -32,9 +32,8 @@ struct LaunchCounts {
   double requests = 0;                   ///< of warps to memory of the device
   double sectors = 0;                    ///< of 32 bytes, touched by each request
   double least_sectors = 0;              ///< that would hold the different bytes of each request
-  double block_bytes =
-      0;             ///< in different sectors of each block: what its first-level cache misses
-  double bytes = 0;  ///< the same, but of each allocation at most its size
+  double block_bytes = 0;                ///< in different sectors of each block
+  double bytes = 0;                      ///< the same, but of each allocation at most its size
 };
 
 /// Which blocks of a launch are counted.

@@ -1,11 +1,11 @@
-"""Compares NRRD files and MetaImages with NumPy, and with SimpleITK.
+"""Compares NRRD files, MetaImages and images of FreeSurfer with NumPy, SimpleITK and nibabel.
 
 Usage: check_images.py COMMAND
 
 Images of all 48 orientations are written here byte by byte in each format, exported to NIfTI by the
 command and compared; the command writes each format from NIfTI, which is parsed here. Where SimpleITK
-is installed, it reads what the command writes and the command what it writes. Damaged files must be
-refused in one line. Exits 77 when NumPy is missing, 1 when something differs.
+is installed, it reads what the command writes and the command what it writes; so does nibabel with .mgh
+and .mgz. Series are compared step by step. Damaged files must be refused in one line. Exits 77 when NumPy is missing, 1 when something differs.
 """
 import gzip
 import itertools
@@ -15,6 +15,12 @@ import tempfile
 import zlib
 
 from check_transforms import LPS, Command, np, orientations, sitk, write_nifti
+
+try:
+    import nibabel
+except ImportError:
+    nibabel = None
+    print("nibabel is not installed: its images are not compared")
 
 DIMS = (6, 5, 4)
 NRRD_TYPES = {"u1": "uchar", "i1": "int8", "u2": "unsigned short", "i2": "short", "u4": "uint",
@@ -85,6 +91,110 @@ def read_nifti(path):
     return samples[:, :, :, 0] if dim[0] == 5 else samples, affine
 
 
+MGH_TYPES = {"u1": 0, "i4": 1, "f4": 3, "i2": 4, "u2": 10}
+
+
+def write_mgh(path, samples, affine, packed=False):
+    """[i][j][k] or, of a series, [i][j][k][step]."""
+    spacing = np.linalg.norm(affine[:3, :3], axis=0)
+    dims = samples.shape[:3]
+    center = affine[:3, :3] @ (np.array(dims) / 2) + affine[:3, 3]
+    steps = samples.shape[3] if samples.ndim == 4 else 1
+    header = struct.pack(">7ih15f", 1, *dims, steps, MGH_TYPES[samples.dtype.str[1:]], 0, 1, *spacing,
+                         *(affine[:3, :3] / spacing).T.ravel(), *center)
+    data = header.ljust(284, b"\0") + samples.astype(samples.dtype.newbyteorder(">")).tobytes(order="F")
+    with open(path, "wb") as file:
+        file.write(gzip.compress(data) if packed else data)
+
+
+def parse_mgh(path):
+    with open(path, "rb") as file:
+        data = file.read()
+    data = gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data
+    numbers = struct.unpack_from(">7ih15f", data)
+    assert numbers[0] == 1 and numbers[7] == 1
+    kind = {v: k for k, v in MGH_TYPES.items()}[numbers[5]]
+    shape = numbers[1:4] + ((numbers[4],) if numbers[4] > 1 else ())
+    samples = np.frombuffer(data, ">" + kind, offset=284).reshape(shape, order="F").astype(kind)
+    affine = np.eye(4)
+    affine[:3, :3] = np.array(numbers[11:20]).reshape(3, 3).T * numbers[8:11]
+    affine[:3, 3] = np.array(numbers[20:23]) - affine[:3, :3] @ (np.array(numbers[1:4]) / 2)
+    return samples, affine
+
+
+def check_mgh(run, random):
+    kinds = itertools.cycle(MGH_TYPES)
+    for n, affine in enumerate(orientations()):
+        samples = random.integers(0, 100, DIMS).astype(next(kinds))
+        for name in ("a.mgh", "a.mgz"):
+            write_mgh(run.path(name), samples, affine, name == "a.mgz")
+            run("export", name, "-o", "out.nii")
+            expect(f"{name}, orientation {n}", read_nifti(run.path("out.nii")), (samples, affine))
+            run("export", "out.nii", "-o", "w" + name)
+            expect(f"{name} written", parse_mgh(run.path("w" + name)), (samples, affine))
+            if not nibabel:
+                continue
+            image = nibabel.load(run.path("w" + name))
+            expect(f"{name} by nibabel", (np.asarray(image.dataobj), image.affine), (samples, affine))
+            nibabel.save(nibabel.MGHImage(samples, affine), run.path("n" + name))
+            run("export", "n" + name, "-o", "out.nii")
+            expect(f"{name} of nibabel", read_nifti(run.path("out.nii")), (samples, affine))
+
+
+def read_series(path):
+    """Steps of a NIfTI file, and their interval."""
+    with open(path, "rb") as file:
+        data = file.read()
+    dim = struct.unpack_from("<8h", data, 40)
+    kind = NIFTI_TYPES[struct.unpack_from("<h", data, 70)[0]]
+    offset = int(struct.unpack_from("<f", data, 108)[0])
+    assert dim[0] == 4, dim
+    return (np.frombuffer(data, "<" + kind, offset=offset).reshape(dim[1:5], order="F"),
+            struct.unpack_from("<f", data, 76 + 16)[0])
+
+
+def check_series(run, random):
+    """Four axes in every format, there and back; SimpleITK reads and writes 4D MetaImages and NRRD."""
+    steps, interval = 3, 0.5
+    samples = random.integers(0, 100, DIMS + (steps,)).astype("i2")
+    for affine in itertools.islice(orientations(), 0, None, 9):
+        write_mgh(run.path("s.mgz"), samples, affine, True)
+        run("export", "s.mgz", "--temporal", "-o", "s.nii")
+        if not np.array_equal(read_series(run.path("s.nii"))[0], samples):
+            sys.exit("frames of FreeSurfer differ")
+        with open(run.path("s.nii"), "r+b") as file:
+            file.seek(76 + 16)
+            file.write(struct.pack("<f", interval))
+            file.seek(123)
+            file.write(struct.pack("<B", 2 + 8))
+        for name in ("t.nrrd", "t.mha", "t.mhd", "t.mgz"):
+            run("export", "s.nii", "--temporal", "-o", name)
+            run("export", name, "--temporal", "-o", "back.nii")
+            found, between = read_series(run.path("back.nii"))
+            if not np.array_equal(found, samples):
+                sys.exit(f"{name}: steps differ")
+            if name != "t.mgz" and abs(between - interval) > 1e-6:
+                sys.exit(f"{name}: interval {between}")
+            if nibabel and name == "t.mgz":
+                if not np.array_equal(np.asarray(nibabel.load(run.path(name)).dataobj), samples):
+                    sys.exit("nibabel reads other frames")
+            if sitk and name != "t.mgz":
+                image = sitk.ReadImage(run.path(name))
+                if image.GetDimension() == 4:
+                    found = np.transpose(sitk.GetArrayFromImage(image), (3, 2, 1, 0))
+                else:  # ITK takes the last axis of NRRD for components
+                    found = np.transpose(sitk.GetArrayFromImage(image), (2, 1, 0, 3))
+                if not np.array_equal(found, samples):
+                    sys.exit(f"{name}: SimpleITK reads other steps")
+        if sitk:
+            image = sitk.ReadImage(run.path("t.mha"))
+            sitk.WriteImage(image, run.path("i.mha"))
+            run("export", "i.mha", "--temporal", "-o", "back.nii")
+            found, between = read_series(run.path("back.nii"))
+            if not np.array_equal(found, samples) or abs(between - interval) > 1e-6:
+                sys.exit("steps of SimpleITK differ")
+
+
 def parse(path):
     """What the command wrote: samples and the affine map to RAS."""
     with open(path, "rb") as file:
@@ -142,9 +252,10 @@ def check_orientations(run, random):
         for name in ("a.nrrd", "b.nrrd", "a.mha", "a.mhd"):
             run("export", name, "-o", "out.nii")
             expect(f"{name}, orientation {n}", read_nifti(run.path("out.nii")), (samples, affine))
-            for written in ("w.nrrd", "w.mha"):
+            for written in ("w.nrrd", "w.mha", "w.mhd"):
                 run("export", name, "-o", written)
-                expect(f"{name} to {written}", parse(run.path(written)), (samples, affine))
+                if written != "w.mhd":
+                    expect(f"{name} to {written}", parse(run.path(written)), (samples, affine))
                 if sitk:
                     image = sitk.ReadImage(run.path(written))
                     array = sitk.GetArrayFromImage(image)
@@ -215,9 +326,11 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         run = Command(sys.argv[1], folder)
         check_orientations(run, random)
+        check_mgh(run, random)
+        check_series(run, random)
         check_warps(run, random)
         check_refusals(run, random)
-    print("48 orientations of NRRD and MetaImage, warps and refusals")
+    print("48 orientations of NRRD, MetaImage and FreeSurfer, warps and refusals")
 
 
 if __name__ == "__main__":

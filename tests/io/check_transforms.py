@@ -1,11 +1,12 @@
-"""Compares warps by displacement fields and affine transforms with NumPy, and with SimpleITK.
+"""Compares warps by displacement fields and transforms with NumPy, SimpleITK and fslpy.
 
 Usage: check_transforms.py COMMAND
 
 Images and fields of all 48 orientations are written here byte by byte, one physical displacement in
 each convention that fields have, and the warped image is computed from the definition. Affine
-transforms are written as ITK's text and MATLAB files; their matrices are computed here. Where
-SimpleITK is installed, its results are compared, too. Exits 77 when NumPy is missing, 1 when a value
+transforms are written as ITK's text and MATLAB files; their matrices are computed here. B-splines,
+fields and composites are written as text, and as HDF5 where SimpleITK is installed, warp fields of FSL as
+NIfTI. Where SimpleITK and fslpy are installed, their results are compared, too. Exits 77 when NumPy is missing, 1 when a value
 differs.
 """
 import itertools
@@ -26,18 +27,28 @@ except ImportError:
     sitk = None
     print("SimpleITK is not installed: its results are not compared")
 
+try:
+    from fsl.data.image import Image as FslImage
+    from fsl.transform import fnirt as fsl_fnirt
+except ImportError:
+    fsl_fnirt = None
+    print("fslpy is not installed: its results are not compared")
+
 LPS = np.diag([-1.0, -1.0, 1.0])  # from RAS to LPS and back
 DIMS = (9, 8, 7)
 DISPVECT, VECTOR = 1006, 1007
 
 
-def write_nifti(path, samples, affine, intent=0, name="", parameter=0.0, unit=2, form=1):
-    """A file of float32 [i][j][k] or [i][j][k][c]; affine from voxel to RAS."""
+def write_nifti(path, samples, affine, intent=0, name="", parameter=0.0, unit=2, form=1, steps=False):
+    """A file of float32 [i][j][k] or [i][j][k][c]; affine from voxel to RAS; c along the axis of time
+    or of components."""
     samples = np.asarray(samples, np.float32)
     dims = samples.shape[:3]
     components = samples.shape[3] if samples.ndim == 4 else 0
     header = bytearray(352)
     dim = [5, *dims, 1, components, 1, 1] if components else [3, *dims, 1, 1, 1, 1]
+    if steps:
+        dim = [4, *dims, components, 1, 1, 1]
     struct.pack_into("<i", header, 0, 348)
     struct.pack_into("<8h", header, 40, *dim)
     struct.pack_into("<3f", header, 56, parameter, 0, 0)
@@ -276,6 +287,149 @@ def check_affine(run, image, affine):
     expect("composite", read_nifti(run.path("out.nii")), sampled(image, affine, there @ LPS, 0), 2e-4)
 
 
+def grid_in_lps(affine, dims):
+    """Fixed parameters of a grid: size, origin, spacing, direction."""
+    matrix = LPS @ affine[:3, :3]
+    spacing = np.linalg.norm(matrix, axis=0)
+    return [*dims, *(LPS @ affine[:3, 3]), *spacing, *(matrix / spacing).ravel()]
+
+
+def basis(x):
+    t = np.abs(x)
+    return np.where(t < 1, 2 / 3 - t * t + t**3 / 2, np.where(t < 2, (2 - t) ** 3 / 6, 0))
+
+
+def splined(coefficients, affine, points):
+    """The definition of ITK: zero where not all 64 coefficients are there."""
+    index = (points - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
+    dims = np.array(coefficients.shape[:3])
+    weights = [basis(index[..., axis, None] - np.arange(dims[axis])) for axis in range(3)]
+    vectors = np.einsum("...a,...b,...c,abcv->...v", *weights, coefficients)
+    inside = np.all((index >= 1 - 1e-9) & (index <= dims - 2 + 1e-9), axis=-1)
+    return np.where(inside[..., None], vectors, 0)
+
+
+def check_splines(run, image, affine, random, is_short):
+    """A composite of a spline, a field and affine transforms; without `is_short` also its parts."""
+    write_nifti(run.path("image.nii"), image, affine)
+    x = points_of(DIMS, affine)
+    knots = affine.copy()
+    knots[:3, :3] = affine[:3, :3] @ np.diag([2.11, 1.87, 2.03])
+    knots[:3, 3] += affine[:3, :3] @ (-2.6, -2.3, -2.7)
+    size = (7, 8, 6)
+    coefficients = random.uniform(-2, 2, size + (3,))  # along LPS
+    # x, y, z one after the other, each with the first index fastest
+    parameters = np.concatenate([coefficients[..., a].ravel(order="F") for a in range(3)])
+    spline = ("BSplineTransform", parameters, grid_in_lps(knots, size))
+    coarse = affine.copy()
+    coarse[:3, :3] *= 1.4
+    vectors = random.uniform(-2, 2, DIMS + (3,))  # along LPS
+    interleaved = np.transpose(vectors, (2, 1, 0, 3)).ravel()
+    field = ("DisplacementFieldTransform", interleaved, grid_in_lps(coarse, DIMS))
+    matrix = np.array([[1.05, 0.1, -0.1], [0.05, 0.95, 0.1], [0.1, -0.1, 1.02]])
+    affine_kind = ("AffineTransform", [*matrix.ravel(), *MOVE], CENTER)
+    steps = {
+        spline[0]: lambda p: p + splined(coefficients @ LPS, knots, p),
+        field[0]: lambda p: p + sampled((vectors @ LPS).astype(np.float32), coarse, p, 0),
+        affine_kind[0]: lambda p: ((p @ LPS - CENTER) @ matrix.T + CENTER + MOVE) @ LPS,
+    }
+    chains = [[spline], [field], [spline, affine_kind], [affine_kind, field, spline, affine_kind]]
+    for chain in chains[-1:] if is_short else chains:
+        with open(run.path("b.tfm"), "w", encoding="ascii") as file:
+            file.write(text_of(([("CompositeTransform", [], [])] if len(chain) > 1 else []) + chain))
+        there = x
+        for kind, _, _ in reversed(chain):  # a composite applies its last transform first
+            there = steps[kind](there)
+        name = " ".join(kind for kind, _, _ in chain)
+        expected = sampled(image, affine, there, 0)
+        run("warp", "image.nii", "b.tfm", "-o", "out.nii")
+        expect_but_rims(f"{name} as text", read_nifti(run.path("out.nii")), expected)
+        if not is_short:
+            run("compose", "b.tfm", "-o", "joined.nii", "--like", "image.nii")
+            joined = read_nifti(run.path("joined.nii"))[:, :, :, 0] @ LPS
+            expect_but_rims(f"compose {name}", joined, there - x)
+        if not sitk:
+            continue
+        transform = sitk.ReadTransform(run.path("b.tfm"))
+        sitk.WriteTransform(transform, run.path("b.h5"))
+        run("warp", "image.nii", "b.h5", "-o", "out.nii")
+        expect_but_rims(f"{name} as HDF5", read_nifti(run.path("out.nii")), expected)
+        by_itk = sitk.Resample(sitk.ReadImage(run.path("image.nii"), sitk.sitkFloat64), transform,
+                               sitk.sitkLinear, 0.0)
+        expect_but_rims(f"{name} by SimpleITK", read_nifti(run.path("out.nii")),
+                        np.swapaxes(sitk.GetArrayFromImage(by_itk), 0, 2))
+
+
+def expect_but_rims(what, found, expected):
+    """Positions within rounding of a rim may fall on either side of it: at most one voxel in 200."""
+    near = np.isclose(found, expected, rtol=0, atol=5e-4)
+    if np.mean(near) < 0.995:
+        sys.exit(f"{what}: {np.sum(~near)} of {near.size} differ")
+    expect(what, np.where(near, found, 0), np.where(near, expected, 0), 5e-4)
+
+
+def fsl_points(dims, affine, index):
+    """FSL's coordinates: scaled indices, the first one from the other end if right-handed."""
+    spacing = np.linalg.norm(affine[:3, :3], axis=0)
+    x = index.astype(float).copy()
+    if np.linalg.det(affine[:3, :3]) > 0:
+        x[..., 0] = dims[0] - 1 - x[..., 0]
+    return x * spacing
+
+
+def check_fsl(run, image, affine, random, is_short):
+    """A field that takes voxels of a reference to those of an image on another grid."""
+    source = affine.copy()
+    source[:3, :3] = affine[:3, :3] @ np.diag([1, -1, 1]) * 0.9  # of the other handedness
+    source[:3, 3] += 3
+    write_nifti(run.path("image.nii"), image, source)
+    dims = (8, 7, 6)
+    index = np.stack(np.meshgrid(*[np.arange(n) for n in dims], indexing="ij"), axis=-1)
+    write_nifti(run.path("like.nii"), np.zeros(dims), affine)
+    start = fsl_points(dims, affine, index)
+    relative = random.uniform(-1.5, 1.5, dims + (3,)).astype(np.float32)
+    there = start + relative  # in FSL's coordinates of the image
+    spacing = np.linalg.norm(source[:3, :3], axis=0)
+    voxel = there / spacing
+    if np.linalg.det(source[:3, :3]) > 0:
+        voxel[..., 0] = DIMS[0] - 1 - voxel[..., 0]
+    expected = sampled(image, source, voxel @ source[:3, :3].T + source[:3, 3], 0)
+    for kind, numbers in ("relative", relative), ("absolute", there):
+        write_nifti(run.path("warp.nii"), numbers, affine, intent=2006, steps=True)
+        for words in [[]] if is_short else [[], ["--fsl", kind]]:
+            run("warp", "image.nii", "warp.nii", "-o", "out.nii", "--like", "like.nii", *words)
+            expect_but_rims(f"FSL, {kind}", read_nifti(run.path("out.nii")), expected)
+        if not is_short:
+            write_nifti(run.path("warp.nii"), numbers, affine, intent=0, steps=True)
+            run("warp", "image.nii", "warp.nii", "-o", "out.nii", "--like", "like.nii", "--fsl", kind)
+            expect_but_rims(f"FSL, {kind}, as said", read_nifti(run.path("out.nii")), expected)
+        if not fsl_fnirt:
+            continue
+        write_nifti(run.path("warp.nii"), numbers, affine, intent=2006, steps=True)
+        moved = fsl_fnirt.readFnirt(run.path("warp.nii"), FslImage(run.path("image.nii")),
+                                    FslImage(run.path("like.nii")), defType=kind)
+        world = index @ affine[:3, :3].T + affine[:3, 3]
+        found = moved.transform(world.reshape(-1, 3), "world", "world").reshape(dims + (3,))
+        expect_but_rims(f"FSL, {kind}, by fslpy", read_nifti(run.path("out.nii")),
+                        sampled(image, source, found, 0))
+
+
+def check_fsl_refusals(run, affine, random):
+    write_nifti(run.path("image.nii"), np.zeros(DIMS), affine)
+    for numbers, intent, word in (
+            (np.zeros(DIMS + (3,)), 2007, "fnirtfileutils"),
+            (np.zeros(DIMS + (2,)), 2006, "three volumes"),
+            (fsl_points(DIMS, affine, np.stack(np.meshgrid(*[np.arange(n) for n in DIMS],
+                                               indexing="ij"), axis=-1)) * 0.5, 2006,
+             "state --fsl relative")):
+        write_nifti(run.path("warp.nii"), numbers, affine, intent=intent, steps=True)
+        line = run.refused("warp", "image.nii", "warp.nii", "-o", "out.nii")
+        assert word in line, line
+    write_nifti(run.path("warp.nii"), np.zeros(DIMS + (3,)), affine, intent=2006, steps=True)
+    line = run.refused("compose", "warp.nii", "-o", "out.nii", "--like", "image.nii")
+    assert "leads to voxels of the image" in line, line
+
+
 def check_compose(run, image, affine):
     """An image warped by A, then by B: sampled at A(B(x))."""
     write_nifti(run.path("image.nii"), image, affine)
@@ -322,7 +476,11 @@ def check_refusals(run, image, affine):
     expect("--axes ras", read_nifti(run.path("out.nii")), expected, 2e-4)
     for text, word in {
         "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n": "does not tell its axes",
-        text_of([("BSplineTransform", [0], [0])]): "is no affine transform",
+        text_of([("BSplineTransform", [0], [0])]): "expected 18 finite fixed parameters",
+        text_of([("BSplineTransform", [0], grid_in_lps(affine, (4, 4, 4)))]): "expected 192 finite",
+        text_of([("BSplineTransform", [0] * 24, grid_in_lps(affine, (2, 2, 2)))]): "fewer than 4",
+        text_of([("DisplacementFieldTransform", [0], grid_in_lps(affine, (1e9, 2, 2.5)))]): "a size of",
+        text_of([("ThinPlateSplineKernelTransform", [0], [0])]): "is no transform of three dimensions",
         text_of([("AffineTransform", [1, 2], [])]): "expected 12 finite parameters",
         text_of([("ScaleTransform", [1, 1, 1], [])] * 2): "write a composite",
         "#Insight Transform File V1.0\nTransform: AffineTransform_double_3_3\nParameters: 1 x\n":
@@ -347,14 +505,17 @@ def main():
     image = random.uniform(0, 100, DIMS).astype(np.float32)
     with tempfile.TemporaryDirectory() as folder:
         run = Command(sys.argv[1], folder)
-        for affine in orientations():
+        for n, affine in enumerate(orientations()):
             coarse = affine.copy()
             coarse[:3, :3] *= 1.3
             coarse[:3, 3] += affine[:3, :3] @ (0.4, 0.9, -0.3)
             check_orientation(run, image, affine, coarse)
+            check_splines(run, image, affine, random, n % 7 > 0)
+            check_fsl(run, image, affine, random, n % 7 > 0)
         for affine in itertools.islice(orientations(), 0, None, 7):
             check_affine(run, image, affine)
             check_compose(run, image, affine)
+        check_fsl_refusals(run, next(orientations()), random)
         check_units(run, image, next(orientations()))
         check_refusals(run, image, next(orientations()))
     for what, worst in worst_of.items():

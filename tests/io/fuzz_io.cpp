@@ -68,6 +68,49 @@ void on_crash(int) {
   _exit(crash);
 }
 
+std::string repeated(const std::string& word, int count) {
+  std::string text;
+  for (int n = 0; n < count; ++n) text += word;
+  return text;
+}
+
+/// A composite of a displacement field and an affine transform, as ITK's HDF5 writer lays it out.
+void write_itk_seed(const std::string& path) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t group = H5Gcreate2(file, "TransformGroup", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const auto write = [](hid_t parent, const char* name, hid_t type, hsize_t count,
+                        const void* data) {
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    const hid_t set = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+    H5Dclose(set);
+    H5Sclose(space);
+  };
+  const hid_t text = H5Tcopy(H5T_C_S1);
+  H5Tset_size(text, H5T_VARIABLE);
+  const std::vector<double> field(24, 0.5), affine{1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 3, 4};
+  const std::vector<double> grid{2, 2, 2, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::vector<double> center{0, 0, 0};
+  const char* const types[] = {"CompositeTransform_double_3_3",
+                               "DisplacementFieldTransform_double_3_3",
+                               "AffineTransform_double_3_3"};
+  for (int n = 0; n < 3; ++n) {
+    const hid_t one =
+        H5Gcreate2(group, std::to_string(n).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    write(one, "TransformType", text, 1, &types[n]);
+    const std::vector<double>& parameters = n == 1 ? field : affine;
+    const std::vector<double>& fixed = n == 1 ? grid : center;
+    if (n > 0) {
+      write(one, "TransformParameters", H5T_NATIVE_DOUBLE, parameters.size(), parameters.data());
+      write(one, "TransformFixedParameters", H5T_NATIVE_DOUBLE, fixed.size(), fixed.data());
+    }
+    H5Gclose(one);
+  }
+  H5Tclose(text);
+  H5Gclose(group);
+  H5Fclose(file);
+}
+
 void write_seeds(const test::ScratchFolder& folder) {
   const Volume a = test::counting_volume(PixelType::int16, 1, "a");
   const Volume b = test::counting_volume(PixelType::float32, 3, "b");
@@ -90,12 +133,28 @@ void write_seeds(const test::ScratchFolder& folder) {
     series.write(0, {{0, 0, 0}, b.grid.dims}, b.data.data());
   }
   series.finish();
+  NiftiFacts warp_field;
+  warp_field.intent_code = 2006;
+  BlockVolumeWriter fsl(folder / "fsl.nii", b.grid, {{b.name, b.type, 1, warp_field}}, {}, true);
+  const Volume one = make_volume(b.grid, b.type);
+  for (const double time : {0.0, 1.0, 2.0}) {
+    fsl.begin_step(time);
+    fsl.write(0, {{0, 0, 0}, b.grid.dims}, one.data.data());
+  }
+  fsl.finish();
   test::write_contact_seeds(folder);
   for (const std::string& name :
-       std::vector<std::string>{"i.nrrd", "packed.nrrd", "i.mha", "packed.mha"}) {
-    BlockVolumeWriter image(folder / name, b.grid, {{b.name, b.type, b.components}},
-                            {.compress = name.starts_with("packed") ? 3 : 0}, false);
-    image.write(0, {{0, 0, 0}, b.grid.dims}, b.data.data());
+       std::vector<std::string>{"i.nrrd", "packed.nrrd", "steps.nrrd", "i.mha", "packed.mha",
+                                "steps.mha", "i.mgh", "i.mgz"}) {
+    const Volume& volume = name.find(".mg") == std::string::npos ? b : a;
+    const bool is_series = name.starts_with("steps");
+    BlockVolumeWriter image(folder / name, volume.grid,
+                            {{volume.name, volume.type, volume.components}},
+                            {.compress = name.starts_with("packed") ? 3 : 0}, is_series);
+    for (int step = 0; step < (is_series ? 2 : 1); ++step) {
+      if (is_series) image.begin_step(step);
+      image.write(0, {{0, 0, 0}, volume.grid.dims}, volume.data.data());
+    }
     image.finish();
   }
   const auto write = [&](const std::string& name, const std::string& text) {
@@ -109,6 +168,14 @@ void write_seeds(const test::ScratchFolder& folder) {
   write("t.tfm",
         "#Insight Transform File V1.0\nTransform: Euler3DTransform_double_3_3\n"
         "Parameters: 0 0 0.2 5 0 0\nFixedParameters: 0 0 0 0\n");
+  write("b.tfm",
+        "#Insight Transform File V1.0\nTransform: CompositeTransform_double_3_3\n"
+        "Transform: BSplineTransform_double_3_3\nParameters:" +
+            repeated(" 0.5", 192) +
+            "\nFixedParameters: 4 4 4 0 0 0 1 1 1 1 0 0 0 1 0 0 0 1\n"
+            "Transform: DisplacementFieldTransform_double_3_3\nParameters:" +
+            repeated(" 1", 24) + "\nFixedParameters: 2 2 2 0 0 0 1 1 1 1 0 0 0 1 0 0 0 1\n");
+  write_itk_seed(folder / "itk");
   std::string matlab;
   for (const auto& [variable, count] :
        {std::pair("AffineTransform_double_3_3", 12), {"fixed", 3}}) {
@@ -122,12 +189,13 @@ void write_seeds(const test::ScratchFolder& folder) {
 }
 
 /// Formats that are chosen by the end of a name, and NRRD.
-constexpr std::array<const char*, 9> named_seeds = {
-    "i.nrrd", "packed.nrrd", "i.mha", "packed.mha", "p.csv", "p.fcsv", "p.json", "t.tfm", "t.mat"};
+constexpr std::array<const char*, 14> named_seeds = {
+    "i.nrrd", "packed.nrrd", "steps.nrrd", "i.mha",  "packed.mha", "steps.mha", "i.mgh",
+    "i.mgz",  "p.csv",       "p.fcsv",     "p.json", "t.tfm",      "b.tfm",     "t.mat"};
 
 std::vector<std::string> seed_names() {
-  std::vector<std::string> names = {"volume", "packed",   "temporal", "mesh",    "moving",
-                                    "v.nii",  "v.nii.gz", "v2.nii",   "s.nii.gz"};
+  std::vector<std::string> names = {"volume",   "packed", "temporal", "mesh", "moving", "v.nii",
+                                    "v.nii.gz", "v2.nii", "s.nii.gz", "itk",  "fsl.nii"};
   names.insert(names.end(), test::contact_seeds.begin(), test::contact_seeds.end());
   names.insert(names.end(), named_seeds.begin(), named_seeds.end());
   return names;
@@ -175,8 +243,9 @@ bool read_all(const std::string& path) {
       reader.read_step(static_cast<std::int64_t>(step));
     }
   });
+  const bool is_transform = reads([&] { read_transform(path, {.image = path}); });
   const bool is_contact = reads([&] { test::read_contact_file(path, path + "-solved"); });
-  return is_volume || is_mesh || is_contact || reads([&] { read_nifti(path); });
+  return is_volume || is_mesh || is_transform || is_contact || reads([&] { read_nifti(path); });
 }
 
 /// Reads a file whose name ends as the format wants. @returns true when one reader succeeded

@@ -407,6 +407,7 @@ TEST_F(MeshImport, ReadsSeriesOfFilesAndMovingPoints) {
   EXPECT_TRUE(reader.header().has_moving_points);
   EXPECT_EQ(reader.mesh().rest_positions[4], (Point3{2, 1, 1}));
   EXPECT_EQ(reader.read_step(2)[4], (Point3{3, 1, 1}));
+  EXPECT_EQ(MeshReader(folder_ / "s_*.vtk").read_step(2)[4], (Point3{3, 1, 1}));
 }
 
 TEST_F(MeshImport, RefusesDamagedSeriesInOneLine) {

@@ -110,7 +110,7 @@ check_host() {
     -DCMAKE_CXX_FLAGS='-Werror -ffunction-sections' -DCMAKE_EXE_LINKER_FLAGS=-Wl,--gc-sections \
     -DTETWARP_DEAD_CODE=ON -DTETWARP_UNITY=OFF -DTETWARP_PYTHON=OFF
   cmake --build "$folder"
-  python3 "$root/tests/lint/dead.py" "$folder" --programs "$folder"/tetwarp{,-read} \
+  python3 "$root/tests/lint/dead.py" "$folder" --programs "$folder"/tetwarp{,-read,-view} \
     "$folder"/tetwarp_{emulated_command,collision_pairs} "$folder"/tetwarp_example_* \
     "$folder"/tetwarp_bench{,_collide,_contact,_peers,_simulate}
 }

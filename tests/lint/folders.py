@@ -96,7 +96,7 @@ ALLOWED = {
     "io/points": ["io/import", "io/vtkhdf", "io/h5", "io/files", *IO],
     "io/reader": ["io/import", "io/volume", "io/files", *IO],
     "io/scene": ["io/files", *IO],
-    "io/transforms": ["io/files", *IO],
+    "io/transforms": ["io/nifti", "io/h5", "io/files", *IO],
     "io/picture": ["io/files", *IO],
     "host/view": ["io/tetwarp", "io/files", "host/base", *BASE],
     "host/view/window": ["host/view", "io/tetwarp", "io/files", "host/base", *BASE],

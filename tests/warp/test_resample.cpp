@@ -204,5 +204,73 @@ TEST(Resample, NamesBadArguments) {
   EXPECT_NE(message(AffineTransform{}, {.filter = Filter::nearest, .output_grid = Grid{}}), "");
 }
 
+/// Coefficients a + b x make the spline a + b x; beyond the inner knots it moves nothing.
+TEST(Resample, BySplinesIsLinearForLinearCoefficients) {
+  BSplineTransform spline{scenes::oblique_grid(6, 5, 7), {}};
+  const DisplacementField linear = field_of(turned(), spline.grid);
+  spline.coefficients.assign(linear.displacement.begin(), linear.displacement.end());
+  const auto moved = [&](const Point3& index) {
+    const Point3 x = spline.grid.world_of(index);
+    return norm(minus(transformed(spline, {x})[0], at(turned(), x)));
+  };
+  for (const Point3& index : {Point3{1, 1, 1}, {4, 3, 5}, {2.3, 1.9, 4.7}, {3, 2, 1.0001}}) {
+    EXPECT_LT(moved(index), 1e-5);
+  }
+  for (const Point3& index : {Point3{0.999, 2, 2}, {2, 3.001, 2}, {2, 2, 6}}) {
+    const Point3 x = spline.grid.world_of(index);
+    EXPECT_EQ(transformed(spline, {x})[0], x);
+  }
+}
+
+/// The definition: products of cubic B-splines around their knots.
+TEST(Resample, BySplinesSumsTheBasis) {
+  BSplineTransform spline{scenes::unit_grid(7, 6, 8), {}};
+  for (std::uint64_t n = 0; n < 3 * 7 * 6 * 8; ++n) {
+    spline.coefficients.push_back(scenes::uniform(5, n) - 0.5);
+  }
+  const auto basis = [](double x) {
+    const double t = std::abs(x);
+    if (t < 1) return 2.0 / 3 - t * t + t * t * t / 2;
+    return t < 2 ? (2 - t) * (2 - t) * (2 - t) / 6 : 0.0;
+  };
+  const Point3 x{2.7, 3.4, 5.1};
+  Point3 sum = x;
+  for (std::size_t n = 0; n < 7 * 6 * 8; ++n) {
+    const double weight = basis(x[0] - static_cast<double>(n % 7)) *
+                          basis(x[1] - static_cast<double>(n / 7 % 6)) *
+                          basis(x[2] - static_cast<double>(n / 42));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sum[axis] += weight * spline.coefficients[3 * n + axis];
+    }
+  }
+  EXPECT_LT(norm(minus(transformed(spline, {x})[0], sum)), 1e-14);
+}
+
+TEST(Resample, ByAChainAppliesItsLinksInTurn) {
+  const Grid grid = scenes::oblique_grid(23, 18, 15);
+  const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+  AffineTransform other{{1, 0.1, 0, 0, 0.9, 0, 0.05, 0, 1}, {-1, 2, 0.5}};
+  const TransformChain chain{{turned(), other}};
+  AffineTransform both;
+  for (std::size_t row = 0; row < 3; ++row) {
+    both.offset[row] = other.offset[row];
+    for (std::size_t n = 0; n < 3; ++n) {
+      both.offset[row] += other.matrix[3 * row + n] * turned().offset[n];
+      both.matrix[3 * row + n] = 0;
+      for (std::size_t m = 0; m < 3; ++m) {
+        both.matrix[3 * row + n] += other.matrix[3 * row + m] * turned().matrix[3 * m + n];
+      }
+    }
+  }
+  const ResampleOptions options{.background = -50};
+  EXPECT_LT(largest_difference(resample(source, chain, options), resample(source, both, options)),
+            1e-3);
+  Volume wide = make_volume(grid, PixelType::float64);
+  std::ranges::copy(numbers_of(source), wide.samples<double>().begin());
+  EXPECT_LT(largest_difference(resample(wide, chain, options), resample(wide, both, options)),
+            1e-9);
+  EXPECT_EQ(message_of([&] { resample(source, TransformChain{}); }),
+            "transform: a chain without links");
+}
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/base/nearest_word.hpp"
+#include "host/base/parallel.hpp"
 
 namespace tetwarp::cli {
 
@@ -43,6 +44,16 @@ CLI::Validator above_zero();
 /// and NaN, but no number that a float64 cannot hold.
 CLI::Validator finite_number();
 CLI::Validator representable_number();
+
+/// Declares the options --device and --threads.
+template <class Number>
+void add_device(CLI::App& app, Number& device) {
+  app.add_option("--device", device, "CUDA device number [0]")->check(at_least(0))->type_name("N");
+}
+template <class Number>
+void add_threads(CLI::App& app, Number& threads, const std::string& description) {
+  app.add_option("--threads", threads, description)->check(between(0, max_threads))->type_name("N");
+}
 
 /// Words and their values, in the order in which help shows them.
 template <class T>

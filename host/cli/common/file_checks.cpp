@@ -66,8 +66,10 @@ void check_hdf_name(const std::string& output) {
 void check_volume_name(const std::string& output) {
   if (has_nifti_name(output) || has_image_name(output)) return;
   if (!has_hdf_extension(output)) {
-    throw IoError(output, "",
-                  "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii, .nii.gz, .nrrd or .mha");
+    throw IoError(
+        output, "",
+        "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii, .nii.gz, .nrrd, .mha, .mhd, "
+        ".mgh or .mgz");
   }
 }
 
@@ -85,8 +87,6 @@ constexpr const char* to_vtu =
 constexpr const char* to_mesh =
     "make a mesh of tetrahedra of it: tetwarp mesh --from-surface, or Gmsh";
 constexpr ForeignFormat foreign_formats[] = {{".dcm", "DICOM image", to_nifti},
-                                             {".mgz", "FreeSurfer image", to_nifti},
-                                             {".mgh", "FreeSurfer image", to_nifti},
                                              {".vti", "VTK image", to_nifti},
                                              {".tif", "TIFF image", to_nifti},
                                              {".tiff", "TIFF image", to_nifti},

@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/declare.hpp"
 
 namespace tetwarp::cli {
@@ -97,12 +96,8 @@ void declare_running(CLI::App& app, ContactArguments& arguments) {
   add_choice(app, "--backend", options.backend, choices_of<Backend>(), "where to compute [auto]");
   add_choice(app, "--precision", options.precision, choices_of<ContactPrecision>(),
              "floating-point format of the iterations [double]");
-  app.add_option("--device", options.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", options.threads, "threads of the cpu back end, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(app, options.device);
+  add_threads(app, options.threads, "threads of the cpu back end, 0 for all cores [0]");
   declare_skips(app, options.expert.skip);
   app.add_option("--report", arguments.report, "write residuals, counts and timings as JSON")
       ->type_name("FILE");

@@ -190,7 +190,8 @@ Warnings step_warnings(const std::string& mesh,
 }
 
 std::string times_warning(const std::string& output, const std::vector<double>& times) {
-  return has_nifti_name(output) ? uneven_times(output, times) : unordered_times(output, times);
+  const bool keeps_interval = has_nifti_name(output) || has_image_name(output);
+  return keeps_interval ? uneven_times(output, times) : unordered_times(output, times);
 }
 
 void refuse_warnings(const Warnings& warnings) {

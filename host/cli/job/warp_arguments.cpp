@@ -7,7 +7,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/declare.hpp"
 
@@ -101,6 +100,23 @@ void add_quantities(CLI::App& app,
       ->type_name("NAME[=" + CLI::detail::join(words_of(laws), "|") + "]");
 }
 
+/// Sets Outside and its distance from a word, with falloff "falloff:DISTANCE".
+void set_outside(const std::string& text, WarpOptions& warp) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  warp.outside = meaning_of("--outside", text.substr(0, colon), choices_of<Outside>());
+  const bool has_distance = colon < text.size();
+  if (has_distance != (warp.outside == Outside::falloff)) {
+    throw CLI::ValidationError("--outside", has_distance
+                                                ? "only falloff takes a distance"
+                                                : "falloff takes a distance, as in falloff:20");
+  }
+  if (!has_distance) return;
+  const std::string distance = text.substr(colon + 1);
+  if (!CLI::detail::lexical_cast(distance, warp.falloff) || !std::isfinite(warp.falloff) ||
+      !(warp.falloff > 0)) {
+    throw CLI::ValidationError("--outside", "'" + distance + "' is not a distance above 0");
+  }
+}
 }  // namespace
 
 void declare_grid_options(CLI::App& app, GridChoice& grid) {
@@ -130,8 +146,11 @@ void declare_sampling_options(CLI::App& app, WarpOptions& warp) {
 }
 
 void declare_outside_options(CLI::App& app, WarpOptions& warp) {
-  add_choice(app, "--outside", warp.outside, choices_of<Outside>(),
-             "voxels outside the mesh: --background, or the source [background]");
+  app.add_option_function<std::string>(
+         "--outside", [&warp](const std::string& text) { set_outside(text, warp); },
+         "voxels outside the mesh: --background, the source, the source moved as the nearest point "
+         "of the mesh, or so with displacements that fall to 0 over a distance [background]")
+      ->type_name("background|identity|nearest|falloff:DISTANCE");
   app.add_option("--background", warp.background, "value of uncovered voxels [0]")
       ->check(representable_number())
       ->type_name("V");
@@ -140,13 +159,13 @@ void declare_outside_options(CLI::App& app, WarpOptions& warp) {
 namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
   app.add_option("FILES", arguments.files,
-                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage), then the mesh that warps "
-                 "them (VTKHDF, .msh, "
-                 ".vtu, .vtk), or one volume and a displacement field or an affine "
-                 "transform of ITK (.tfm, .txt, .mat)")
+                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage, .mgz), then the mesh that "
+                 "warps them (VTKHDF, .msh, .vtu, .vtk, .pvd, .vtm, .exo, 'step_*.vtu'), or one "
+                 "volume and a displacement field or a transform of ITK (.tfm, .txt, .mat, .h5)")
       ->type_name("");
-  app.add_option("-o,--output", arguments.output,
-                 "file to write, .vtkhdf, .nii.gz, .nrrd or .mha; for several volumes a folder")
+  app.add_option(
+         "-o,--output", arguments.output,
+         "file to write, .vtkhdf, .nii.gz, .nrrd, .mha, .mhd or .mgz; for several volumes a folder")
       ->type_name("OUT");
   app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
       ->allow_extra_args(false)
@@ -167,6 +186,14 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
       app, arguments.axes,
       "axes of meshes in .msh, .vtu and .vtk and of vectors and tensors in NIfTI images; lps is "
       "turned to ras [ras; of a displacement field what its intent tells]");
+  app.add_option_function<std::string>(
+         "--fsl",
+         [&arguments](const std::string& word) {
+           arguments.fsl = meaning_of("--fsl", word, choices_of<FslWarp>());
+         },
+         "the last file is a warp field of FSL, and what its numbers are [told by its intent and "
+         "its numbers]")
+      ->type_name("relative|absolute");
   app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
   app.add_option("--rest-step", arguments.mesh.rest_step,
@@ -230,12 +257,8 @@ void declare_skips(CLI::App& app, SkipOptions& skip) {
 void declare_running(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
   add_choice(app, "--backend", warp.backend, choices_of<Backend>(), "where to compute [auto]");
-  app.add_option("--device", warp.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(app, warp.device);
+  add_threads(app, warp.threads, "threads of the cpu back end, 0 for all cores [0]");
   declare_skips(app, warp.expert.skip);
   add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
@@ -247,9 +270,16 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--report", arguments.report, "write timings and counts as JSON")
       ->type_name("FILE");
   add_quiet(app, arguments.quiet);
+  app.add_flag("--provenance", arguments.provenance,
+               "write OUT.json beside each output OUT: version, options, and inputs with their "
+               "SHA-256");
   app.add_option("--batch", arguments.batch,
-                 "run the jobs of a JSON file; other options are their defaults")
+                 "run the jobs of a JSON or CSV file; other options are their defaults")
       ->type_name("FILE");
+  app.add_option("--jobs", arguments.jobs,
+                 "jobs of a batch at a time, each a process, as far as memory holds them [1]")
+      ->check(between(1, max_threads))
+      ->type_name("N");
 }
 }  // namespace
 
@@ -268,9 +298,13 @@ void check_sampling(const WarpOptions& warp) {
   if (warp.intensity == Intensity::conservative && warp.filter != Filter::linear) {
     throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
   }
-  if (warp.intensity == Intensity::conservative && warp.outside == Outside::identity) {
+  if (warp.intensity == Intensity::conservative && warp.outside != Outside::background) {
     throw CLI::ValidationError(
         "--outside", "--intensity conservative keeps the total of the mesh alone; leave it out");
+  }
+  if (warp.intensity == Intensity::density && extends(warp.outside)) {
+    throw CLI::ValidationError("--outside",
+                               "nearest and falloff are for values, not for --intensity density");
   }
 }
 
@@ -278,6 +312,9 @@ void check_complete(const WarpArguments& arguments) {
   check_sampling(arguments.warp);
   if (arguments.pair && arguments.source_step) {
     throw CLI::ValidationError("--pair", "takes all steps of the volume; leave out --source-step");
+  }
+  if (arguments.jobs > 1 && arguments.batch.empty()) {
+    throw CLI::ValidationError("--jobs", "is of a --batch; --threads divides one warp");
   }
   if (!arguments.batch.empty()) {
     if (!arguments.files.empty() || !arguments.output.empty()) {
@@ -292,12 +329,23 @@ void check_complete(const WarpArguments& arguments) {
   if (arguments.output.empty()) throw CLI::ValidationError("-o OUT", "an output is needed");
 }
 
+std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> given;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0 && !option->get_lnames().empty()) {
+      given.emplace_back(option->get_lnames().front(), option->results());
+    }
+  }
+  return given;
+}
+
 WarpArguments parse_warp_arguments(std::vector<std::string> words) {
   WarpArguments arguments;
   CLI::App app;
   declare_warp_options(app, arguments);
   std::reverse(words.begin(), words.end());  // CLI11 expects the last word first
   app.parse(std::move(words));
+  arguments.given = given_options(app);
   check_complete(arguments);
   return arguments;
 }

@@ -6,9 +6,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tetwarp/io.hpp>
+#include <tetwarp/transform_file.hpp>
 #include <tetwarp/warp.hpp>
 
 #include "host/cli/job/extra_outputs.hpp"
@@ -25,8 +27,9 @@ struct WarpArguments {
   std::optional<std::int64_t> source_step;  ///< of volume files with several steps
   bool pair = false;                        ///< step n of the mesh warps step n of the volume
   StepSelection steps;
-  MeshReadOptions mesh;      ///< without the axes of `import`
-  std::optional<Axes> axes;  ///< of files that are not VTKHDF
+  MeshReadOptions mesh;        ///< without the axes of `import`
+  std::optional<Axes> axes;    ///< of files that are not VTKHDF
+  std::optional<FslWarp> fsl;  ///< the last file is a warp field of FSL
   GridChoice grid;
   std::map<std::string, Quantity> quantities;  ///< of arrays, by name; others are components
   WarpOptions warp;  ///< without output_grid and quantities, which need the files
@@ -40,9 +43,15 @@ struct WarpArguments {
   bool quiet = false;
   std::string report;
   std::string batch;
+  int jobs = 1;             ///< of a batch, processes at a time
+  bool provenance = false;  ///< write a file beside each output of what it was made from
+  /// Options as given, with their values, in the order of the help.
+  std::vector<std::pair<std::string, std::vector<std::string>>> given;
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
+  /// How to read the last file if it is a transform.
+  TransformReadOptions transform_options() const { return {axes, fsl, files.front()}; }
   Quantity quantity_of(const std::string& array) const {
     const auto found = quantities.find(array);
     return found == quantities.end() ? Quantity::components : found->second;
@@ -65,6 +74,9 @@ void check_sampling(const WarpOptions& warp);
 /// Throws CLI::ValidationError when volumes, mesh or output are missing, are given with --batch, or
 /// when options contradict each other.
 void check_complete(const WarpArguments& arguments);
+
+/// Options that were given, with their values, without files.
+std::vector<std::pair<std::string, std::vector<std::string>>> given_options(const CLI::App& app);
 
 /// Parses words as those of a command line. Throws CLI::ParseError.
 WarpArguments parse_warp_arguments(std::vector<std::string> words);

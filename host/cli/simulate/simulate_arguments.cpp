@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/job/warp_arguments.hpp"
 #include "io/files/extension.hpp"
@@ -81,13 +80,9 @@ void declare_pictures(CLI::App& app, SimulateArguments& arguments) {
 void declare_running(CLI::App& app, SimulateArguments& arguments) {
   SimulateOptions& simulate = arguments.simulate;
   add_choice(app, "--backend", simulate.backend, choices_of<Backend>(), "where to compute [auto]");
-  app.add_option("--device", simulate.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", simulate.threads,
-                 "threads of the cpu back end, 0 for all cores [0]; any number: same results")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(app, simulate.device);
+  add_threads(app, simulate.threads,
+              "threads of the cpu back end, 0 for all cores [0]; any number: same results");
   app.add_option("--max-iterations", simulate.max_iterations,
                  "of conjugate gradients per solve [10000]")
       ->check(at_least(1))

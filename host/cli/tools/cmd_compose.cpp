@@ -12,7 +12,6 @@
 #include <tetwarp/io.hpp>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
@@ -137,9 +136,7 @@ int run_compose(const ComposeArguments& arguments) {
       fmt::print(stderr, "tetwarp: {}: {}\n", names[s], itk_slice_note);
     }
     if (arguments.quiet) continue;
-    const bool inverts = std::any_of(links.begin(), links.end(), [](const ChainLink& link) {
-      return link.is_inverse() && link.affine() == nullptr && link.step_count() == 1;
-    });
+    const bool inverts = std::ranges::any_of(links, &ChainLink::iterates);
     fmt::print(
         "{} transforms on {} x {} x {} voxels{}: {}\n", links.size(), grid.dims[0], grid.dims[1],
         grid.dims[2],
@@ -186,9 +183,7 @@ void add_compose_command(CLI::App& app, Run& run) {
   add_axes(*command, arguments->axes,
            "axes of meshes in .msh, .vtu and .vtk, and of the components of fields; lps is turned "
            "to ras [ras; of fields what their intent tells]");
-  command->add_option("--threads", arguments->threads, "threads, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_threads(*command, arguments->threads, "threads, 0 for all cores [0]");
   command
       ->add_option("--compress", arguments->compress, "deflate level, 0 for none [0; of .nii.gz 6]")
       ->check(between(0, 9))

@@ -39,8 +39,10 @@ std::string axes_text(const ArrayHeader& array) {
 int run_export(const ExportArguments& arguments) {
   check_volume(arguments.input, "usage: tetwarp export VOLUME -o FILE.nii.gz");
   if (!holds_one_array(arguments.output)) {
-    throw IoError(arguments.output, "",
-                  "the name of an image to export ends in .nii, .nii.gz, .nrrd or .mha");
+    throw IoError(
+        arguments.output, "",
+        "the name of an image to export ends in .nii, .nii.gz, .nrrd, .mha, .mhd, .mgh or "
+        ".mgz");
   }
   check_output_file(arguments.output, {arguments.input});
   const std::vector<double> times = read_volume_header(arguments.input).times;
@@ -87,7 +89,8 @@ void add_export_command(CLI::App& app, Run& run) {
       ->required()
       ->type_name("");
   command
-      ->add_option("-o,--output", arguments->output, "image to write, .nii, .nii.gz, .nrrd or .mha")
+      ->add_option("-o,--output", arguments->output,
+                   "image to write, .nii, .nii.gz, .nrrd, .mha, .mhd or .mgz")
       ->required()
       ->type_name("FILE");
   command->add_option("--array", arguments->array, "array to write [active scalars]")

@@ -13,7 +13,6 @@
 #include <tetwarp/point_file.hpp>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
@@ -191,12 +190,8 @@ void add_points_command(CLI::App& app, Run& run) {
            "is turned to ras and back [ras]");
   add_choice(*command, "--backend", arguments->map.backend, choices_of<Backend>(),
              "where to compute [auto, which is cpu]");
-  command->add_option("--device", arguments->map.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  command->add_option("--threads", arguments->map.threads, "threads, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(*command, arguments->map.device);
+  add_threads(*command, arguments->map.threads, "threads, 0 for all cores [0]");
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_points(*arguments); }; });
 }

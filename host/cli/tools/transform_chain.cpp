@@ -15,12 +15,18 @@ namespace tetwarp::cli {
 namespace {
 constexpr std::string_view inverse_mark = "^-1";
 
-/// x with x + u(x) = y, by x <- y - u(x).
+/// The grid of a field or a spline.
+const Grid& grid_of(const Transform& transform) {
+  const auto* const field = std::get_if<DisplacementField>(&transform);
+  return field != nullptr ? field->grid : std::get<BSplineTransform>(transform).grid;
+}
+
+/// x with x + u(x) = y, by x <- y - u(x), for a field or a spline.
 void invert_field(const Transform& field, std::vector<Point3>& points, ChainNotes& notes) {
   constexpr int most_steps = 100;
   const std::vector<Point3> target = points;
   double step = 0.1;  // of the largest spacing: a residual beyond it is no inverse
-  const Grid& grid = std::get<DisplacementField>(field).grid;
+  const Grid& grid = grid_of(field);
   const double bound = step * *std::max_element(grid.spacing.begin(), grid.spacing.end());
   std::vector<double> residual(points.size());
   for (int n = 0; n < most_steps; ++n) {
@@ -41,6 +47,19 @@ void invert_field(const Transform& field, std::vector<Point3>& points, ChainNote
       ++notes.not_inverted;
     }
   }
+}
+
+/// The links of a chain, or the only transform.
+std::vector<Transform> links_of_file(Transform transform) {
+  std::vector<Transform> links;
+  if (auto* const chain = std::get_if<TransformChain>(&transform)) {
+    for (SingleTransform& link : chain->links) {
+      std::visit([&](auto& single) { links.emplace_back(std::move(single)); }, link);
+    }
+  } else {
+    links.push_back(std::move(transform));
+  }
+  return links;
 }
 }  // namespace
 
@@ -74,52 +93,56 @@ ChainLink::ChainLink(const std::string& word,
                      const std::optional<Axes>& axes)
     : path_(word), is_inverse_(word.ends_with(inverse_mark)) {
   if (is_inverse_) path_.resize(path_.size() - inverse_mark.size());
-  if (kind_of(path_) != FileKind::mesh && is_transform_file(path_)) {
-    Transform transform = read_transform(path_, axes).transform;
-    try {
-      if (const auto* const affine = std::get_if<AffineTransform>(&transform);
-          affine != nullptr && is_inverse_) {
-        transform = inverse_of(*affine);
+  if (kind_of(path_) != FileKind::mesh && is_transform_file(path_, {.axes = axes})) {
+    Transform transform = read_transform(path_, {.axes = axes}).transform;
+    transforms_ = links_of_file(std::move(transform));
+    if (!is_inverse_) return;
+    std::reverse(transforms_.begin(), transforms_.end());
+    for (Transform& single : transforms_) {
+      auto* const affine = std::get_if<AffineTransform>(&single);
+      if (affine == nullptr) continue;
+      try {
+        *affine = inverse_of(*affine);
+      } catch (const std::invalid_argument& error) {
+        throw IoError(path_, "", error.what());
       }
-    } catch (const std::invalid_argument& error) {
-      throw IoError(path_, "", error.what());
     }
-    what_ = std::move(transform);
     return;
   }
-  check_mesh(path_, "expected a mesh, a displacement field or an affine transform of ITK");
+  check_mesh(path_, "expected a mesh, a displacement field or a transform of ITK");
   MeshReadOptions options = mesh;
   if (kind_of(path_) != FileKind::mesh) options.import.axes = axes.value_or(Axes::ras);
-  what_.emplace<MeshReader>(path_, options);
+  mesh_.emplace(path_, options);
 }
 
 std::int64_t ChainLink::step_count() const {
-  const auto* const mesh = std::get_if<MeshReader>(&what_);
-  return mesh == nullptr ? 1 : std::ssize(mesh->header().times);
+  return mesh_ ? std::ssize(mesh_->header().times) : 1;
 }
 
-const AffineTransform* ChainLink::affine() const {
-  const auto* const transform = std::get_if<Transform>(&what_);
-  return transform == nullptr ? nullptr : std::get_if<AffineTransform>(transform);
+bool ChainLink::iterates() const {
+  return is_inverse_ && std::ranges::any_of(transforms_, [](const Transform& single) {
+           return !std::holds_alternative<AffineTransform>(single);
+         });
 }
 
 void ChainLink::apply(std::int64_t step,
                       int threads,
                       std::vector<Point3>& points,
                       ChainNotes& notes) const {
-  if (const auto* const mesh = std::get_if<MeshReader>(&what_)) {
+  if (mesh_) {
     MappedPoints mapped = map_points(
-        mesh->mesh(), mesh->read_step(step_count() == 1 ? 0 : step), std::move(points),
+        mesh_->mesh(), mesh_->read_step(step_count() == 1 ? 0 : step), std::move(points),
         {.inverse = !is_inverse_, .threads = threads});  // a warp samples where material came from
     notes.outside += mapped.outside;
     points = std::move(mapped.points);
     return;
   }
-  const Transform& transform = std::get<Transform>(what_);
-  if (is_inverse_ && std::holds_alternative<DisplacementField>(transform)) {
-    invert_field(transform, points, notes);
-  } else {
-    points = transformed(transform, std::move(points));
+  for (const Transform& single : transforms_) {
+    if (is_inverse_ && !std::holds_alternative<AffineTransform>(single)) {
+      invert_field(single, points, notes);
+    } else {
+      points = transformed(single, std::move(points));
+    }
   }
 }
 

@@ -1,5 +1,5 @@
 /// @file transform_chain.hpp
-/// Meshes, displacement fields and affine transforms one after the other.
+/// Meshes and transforms one after the other.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -27,9 +27,8 @@ class ChainLink {
   ChainLink(const std::string& word, const MeshReadOptions& mesh, const std::optional<Axes>& axes);
 
   const std::string& path() const { return path_; }
-  std::int64_t step_count() const;        ///< 1 but for meshes
-  const AffineTransform* affine() const;  ///< null: another transform
-  bool is_inverse() const { return is_inverse_; }
+  std::int64_t step_count() const;  ///< 1 but for meshes
+  bool iterates() const;            ///< it is the inverse of a field or a spline, by fixed point
 
   /// @param step  of a mesh; one with a single step takes that
   void apply(std::int64_t step, int threads, std::vector<Point3>& points, ChainNotes& notes) const;
@@ -37,7 +36,9 @@ class ChainLink {
  private:
   std::string path_;
   bool is_inverse_;
-  std::variant<std::monostate, MeshReader, Transform> what_;
+  std::optional<MeshReader> mesh_;
+  std::vector<Transform> transforms_;  ///< in the order of application, no chains; of an inverse
+                                       ///< affine ones are inverted
 };
 
 /// The inverse. Throws std::invalid_argument when the matrix is singular.

@@ -13,7 +13,6 @@
 #include <tetwarp/scene_io.hpp>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
@@ -87,7 +86,7 @@ void declare_picture(CLI::App& app, view::ViewOptions& options) {
   app.add_option("--preset", options.preset, "colors of volumes [ct]")
       ->check(CLI::IsMember({"ct", "mr"}).description(""))
       ->type_name("ct|mr");
-  app.add_option("--voxels", options.voxels, "most voxels of a warped volume, about [2000000]")
+  app.add_option("--voxels", options.voxels, "most voxels of all warped volumes, about [2000000]")
       ->check(between(1000, 1'000'000'000))
       ->type_name("N");
   app.add_option("--screenshot", options.screenshot, "picture of the end")->type_name("FILE.png");
@@ -109,13 +108,9 @@ void declare_simulation(CLI::App& app, view::ViewOptions& options) {
   app.add_option("--backend", options.backend, "where to compute [auto]")
       ->check(CLI::IsMember(words_of(choices_of<Backend>())).description(""))
       ->type_name(CLI::detail::join(words_of(choices_of<Backend>()), "|"));
-  app.add_option("--device", options.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", options.threads,
-                 "threads of the cpu back end, 0 for all cores [0]; any number: same results")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+  add_device(app, options.device);
+  add_threads(app, options.threads,
+              "threads of the cpu back end, 0 for all cores [0]; any number: same results");
 }
 
 void declare_input(CLI::App& app, view::ViewOptions& options) {

@@ -1,23 +1,35 @@
 /// @file batch.cpp
-/// Runs the jobs of a batch one after the other and reports each.
+/// Runs the jobs of a batch, one after the other or as processes beside each other, and reports
+/// each.
 #include "host/cli/warp/batch.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/version.hpp>
+#include <thread>
+#include <utility>
 
+#include "host/base/parallel.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/common/json_text.hpp"
 #include "host/cli/job/job_plan.hpp"
 #include "host/cli/warp/batch_file.hpp"
+#include "host/cli/warp/job_process.hpp"
 #include "host/cli/warp/warp_job.hpp"
 #include "io/files/finished_file.hpp"
+#include "io/files/memory.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -85,10 +97,18 @@ void fail(Outcome& outcome, const std::string& name, Json report, const std::str
   outcome.reports.push_back(report);
 }
 
+std::string name_of_job(int number) {
+  return fmt::format("job {}", number);
+}
+
+/// The report of a job that has not run.
+Json files_of_job(const BatchJob& job, int number) {
+  return {{"job", number}, {"volumes", job.volumes}, {"mesh", job.mesh}, {"output", job.output}};
+}
+
 void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
-  const std::string name = fmt::format("job {}", number);
-  Json report{
-      {"job", number}, {"volumes", job.volumes}, {"mesh", job.mesh}, {"output", job.output}};
+  const std::string name = name_of_job(number);
+  Json report = files_of_job(job, number);
   if (!job.error.empty()) {
     fail(outcome, name, report, job.error);
     return;
@@ -116,6 +136,194 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
     fail(outcome, name, report, one_line(error.what()));
   }
 }
+
+/// Memory that a job will take [byte]; -1 where it cannot be planned, e.g. because an earlier job
+/// makes its input.
+double planned_memory(const BatchJob& job) {
+  WarpArguments arguments = job.arguments;
+  arguments.dry_run = true;
+  arguments.report.clear();
+  double most = 0;
+  try {
+    const JobResult result = run_warp_job(arguments, {.shows_progress = false});
+    for (const StepPlan& plan : result.plans) most = std::max(most, plan.memory);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::exception&) {
+    return -1;
+  }
+  return most;
+}
+
+/// Jobs as processes, at most some of them at a time, as far as their memory fits.
+class SideBySide {
+ public:
+  SideBySide(const std::vector<BatchJob>& jobs, const WarpArguments& shared, Outcome& outcome)
+      : jobs_(jobs),
+        shared_(shared),
+        outcome_(outcome),
+        folder_(std::filesystem::temp_directory_path() /
+                fmt::format("tetwarp-batch-{}", getpid())) {
+    std::filesystem::create_directories(folder_);
+  }
+  SideBySide(const SideBySide&) = delete;
+  SideBySide& operator=(const SideBySide&) = delete;
+  ~SideBySide() {
+    running_.clear();  // ends processes before their files go
+    std::error_code error;
+    std::filesystem::remove_all(folder_, error);
+  }
+
+  void run() {
+    plan();
+    while (!is_interrupted() && (!waiting_.empty() || !running_.empty())) {
+      start_some();
+      if (!take_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    for (Running& job : running_) {
+      job.process->interrupt();
+      while (!job.process->has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      Json report = files_of_job(jobs_[job.index], number_of(job.index));
+      report["status"] = "interrupted";
+      outcome_.reports.push_back(report);
+    }
+  }
+
+ private:
+  struct Waiting {
+    std::size_t index;
+    double memory;  ///< -1: not known
+  };
+  struct Running {
+    std::size_t index;
+    double memory;
+    std::unique_ptr<JobProcess> process;
+  };
+
+  static int number_of(std::size_t index) { return static_cast<int>(index) + 1; }
+
+  /// Plans the memory of all jobs and states it. Jobs that cannot be planned come last, alone.
+  void plan() {
+    std::vector<Waiting> unknown;
+    std::vector<double> sizes;
+    for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      stop_if_interrupted();
+      if (!jobs_[j].error.empty()) {
+        fail(outcome_, name_of_job(number_of(j)), files_of_job(jobs_[j], number_of(j)),
+             jobs_[j].error);
+        continue;
+      }
+      const double memory = planned_memory(jobs_[j]);
+      (memory < 0 ? unknown : waiting_).push_back({j, memory});
+      sizes.push_back(std::max(memory, 0.0));
+    }
+    waiting_.insert(waiting_.end(), unknown.begin(), unknown.end());
+    std::ranges::sort(sizes, std::greater());
+    double together = 0;
+    const auto beside = std::min(sizes.size(), static_cast<std::size_t>(shared_.jobs));
+    for (std::size_t n = 0; n < beside; ++n) together += sizes[n];
+    available_ = available_memory();
+    if (shared_.quiet) return;
+    fmt::print(stderr,
+               "tetwarp: {} jobs, up to {} at a time, take up to {} of memory; {} are "
+               "available{}\n",
+               jobs_.size(), shared_.jobs, bytes_text(together), bytes_text(available_),
+               together > available_ ? ", fewer will run at a time" : "");
+  }
+
+  void start_some() {
+    while (!waiting_.empty() && running_.size() < static_cast<std::size_t>(shared_.jobs)) {
+      const Waiting next = waiting_.front();
+      double taken = std::max(next.memory, 0.0);
+      bool is_alone = next.memory < 0;
+      for (const Running& job : running_) {
+        taken += std::max(job.memory, 0.0);
+        is_alone = is_alone || job.memory < 0;
+      }
+      if (!running_.empty() && (is_alone || taken > available_)) return;
+      waiting_.erase(waiting_.begin());
+      start(next);
+    }
+  }
+
+  std::string report_of(std::size_t index) const {
+    const std::string& own = jobs_[index].arguments.report;
+    return own.empty() ? (folder_ / fmt::format("{}.json", index)).string() : own;
+  }
+
+  void start(const Waiting& job) {
+    std::vector<std::string> words = jobs_[job.index].words;
+    words.insert(words.begin(), "warp");
+    words.emplace_back("--quiet");
+    if (jobs_[job.index].arguments.report.empty()) {
+      words.push_back("--report=" + report_of(job.index));
+    }
+    if (jobs_[job.index].arguments.warp.threads == 0) {
+      words.push_back(fmt::format("--threads={}", std::max(1, thread_count(0) / shared_.jobs)));
+    }
+    running_.push_back({job.index, job.memory, std::make_unique<JobProcess>(words)});
+  }
+
+  /// Reports the jobs that have ended. @returns whether there are any
+  bool take_ended() {
+    bool is_any = false;
+    for (std::size_t n = 0; n < running_.size();) {
+      if (!running_[n].process->has_ended()) {
+        ++n;
+        continue;
+      }
+      report_end(running_[n]);
+      running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(n));
+      write_report(shared_.report, outcome_, waiting_.empty() && running_.empty());
+      is_any = true;
+    }
+    return is_any;
+  }
+
+  void report_end(const Running& job) {
+    const std::string name = name_of_job(number_of(job.index));
+    Json report = files_of_job(jobs_[job.index], number_of(job.index));
+    const ProcessEnd& end = job.process->end();
+    if (end.exit_code == interrupted_exit_code) {
+      report["status"] = "interrupted";
+      outcome_.reports.push_back(report);
+      return;
+    }
+    if (end.exit_code != 0) {
+      fail(outcome_, name, report,
+           end.problem.empty() ? fmt::format("ended with code {}", end.exit_code) : end.problem);
+      return;
+    }
+    std::ifstream file(report_of(job.index));
+    report.update(Json::parse(file));
+    const bool is_skipped = report.value("status", "") == "skipped";
+    ++(is_skipped ? outcome_.skipped : outcome_.done);
+    outcome_.reports.push_back(report);
+    if (shared_.quiet) return;
+    for (const Json& warning : report["warnings"]) {
+      fmt::print(stderr, "tetwarp: {}: warning: {}\n", name, warning.get<std::string>());
+    }
+    fmt::print("{}: {}, {:.2f} s: {}\n", name, report.value("status", ""),
+               report["timings"].value("total", 0.0), report.value("output", ""));
+  }
+
+  const std::vector<BatchJob>& jobs_;
+  const WarpArguments& shared_;
+  Outcome& outcome_;
+  std::filesystem::path folder_;  ///< of the jobs' reports
+  double available_ = 0;          ///< [byte] when the batch began
+  std::vector<Waiting> waiting_;
+  std::vector<Running> running_;
+};
+
+void run_one_by_one(const std::vector<BatchJob>& jobs,
+                    const WarpArguments& shared,
+                    Outcome& outcome) {
+  for (std::size_t j = 0; j < jobs.size() && !is_interrupted(); ++j) {
+    run_job(jobs[j], static_cast<int>(j) + 1, shared.quiet, outcome);
+    write_report(shared.report, outcome, j + 1 == jobs.size() && !is_interrupted());
+  }
+}
 }  // namespace
 
 int run_batch(const WarpArguments& shared, const CLI::App& defaults) {
@@ -123,9 +331,11 @@ int run_batch(const WarpArguments& shared, const CLI::App& defaults) {
   const std::vector<BatchJob> jobs = read_batch(shared.batch, defaults);
   check_collisions(jobs, shared);
   Outcome outcome;
-  for (std::size_t j = 0; j < jobs.size() && !is_interrupted(); ++j) {
-    run_job(jobs[j], static_cast<int>(j) + 1, shared.quiet, outcome);
-    write_report(shared.report, outcome, j + 1 == jobs.size() && !is_interrupted());
+  if (shared.jobs > 1 && !shared.dry_run) {
+    SideBySide(jobs, shared, outcome).run();
+    write_report(shared.report, outcome, !is_interrupted());
+  } else {
+    run_one_by_one(jobs, shared, outcome);
   }
   if (!shared.quiet) {
     fmt::print("{} done, {} failed, {} skipped\n", outcome.done, outcome.failed, outcome.skipped);

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "host/cli/common/declare.hpp"
-#include "io/files/text_file.hpp"
+#include "host/cli/warp/batch_list.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
 /// Options of the whole batch; a job may not have them.
-const Words batch_options{"help", "batch", "quiet"};
+const Words batch_options{"help", "batch", "jobs", "quiet"};
 
 /// Options whose values are names of arrays, which may hold commas.
 const Words name_options{"array", "vectors", "tensors"};
@@ -123,7 +123,7 @@ class JobReader {
       return value.get<bool>() ? Words{"--" + key} : Words{};
     }
     Words texts = key == "output" ? file_names(key, value) : value_texts(key, value);
-    const bool is_path = key == "output" || key == "report" || key == "rest" ||
+    const bool is_path = key == "output" || key == "report" || key == "rest" || key == "like" ||
                          (key == "grid" && !is_one_of(texts.front(), {"same", "bounds"}));
     if (is_path) texts.front() = located(texts.front());
     return option_words(key, texts);
@@ -141,40 +141,18 @@ class JobReader {
   fs::path folder_;
   const CLI::App& defaults_;
 };
-
-/// "line L, column C" of a byte offset, both from 1.
-std::string position_text(const std::string& text, std::size_t offset) {
-  const std::string before = text.substr(0, offset == 0 ? 0 : offset - 1);
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t line_start =
-      before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1;
-  return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
-}
-
-Json read_json(const std::string& path) {
-  const std::string text = read_text(path);
-  try {
-    return Json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    throw IoError(path, position_text(text, error.byte), "not valid JSON; correct it");
-  }
-}
 }  // namespace
 
 std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults) {
-  const Json batch = read_json(path);
-  if (!batch.is_object() || batch.size() != 1 || !batch.contains("jobs") ||
-      !batch["jobs"].is_array() || batch["jobs"].empty()) {
-    throw IoError(path, "", "expected {\"jobs\": [...]} with one job or more and no other key");
-  }
   const JobReader reader(fs::path(path).parent_path(), defaults);
   std::vector<BatchJob> jobs;
   const std::string name = path + ": ";
-  for (const Json& job : batch["jobs"]) {
+  for (const Json& job : read_job_list(path)) {
     BatchJob& parsed = jobs.emplace_back();
     reader.name_files(job, parsed);
     try {
-      parsed.arguments = parse_warp_arguments(reader.words_of(job));
+      parsed.words = reader.words_of(job);
+      parsed.arguments = parse_warp_arguments(parsed.words);
     } catch (const CLI::ParseError& error) {
       parsed.error = name + one_line(error.what());
     } catch (const std::invalid_argument& error) {

@@ -1,6 +1,6 @@
 /// @file batch_file.hpp
 /// The file of `tetwarp warp --batch`: {"jobs": [{"volume": ..., "mesh": ..., "output": ..., any
-/// long option without its dashes}, ...]}.
+/// long option without its dashes}, ...]}, or the same as CSV; see read_job_list().
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -15,14 +15,15 @@ struct BatchJob {
   std::vector<std::string> volumes;  ///< relative to the batch file; also of a job with an error
   std::string mesh;                  ///< empty: the job names none
   std::string output;                ///< empty: the job names none
+  std::vector<std::string> words;    ///< its command line
   WarpArguments arguments;
   std::string error;  ///< empty: the arguments are valid
 };
 
 /// Reads a batch file. Relative paths in it start at its folder.
 /// @param defaults  options as given on the command line, for jobs that do not set them
-/// @throws IoError  when the file is not JSON or holds no list of jobs; an error inside a job is
-///                  stored in that job
+/// @throws IoError  when the file holds no list of jobs; an error inside a job is stored in that
+///                  job
 std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults);
 
 }  // namespace tetwarp::cli

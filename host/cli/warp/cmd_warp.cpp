@@ -54,11 +54,12 @@ void add_warp_command(CLI::App& app, Run& run) {
       "  tetwarp warp atlas.nii.gz mesh.vtkhdf -o atlas_warped.nii.gz "
       "--filter labels\n"
       "  tetwarp warp ct.nii.gz 1Warp.nii.gz -o warped.nii.gz --like fixed.nii.gz\n"
-      "  tetwarp warp --batch jobs.json --compress 1\n"
+      "  tetwarp warp --batch jobs.csv --jobs 4 --resume\n"
       "  tetwarp warp large.vtkhdf mesh.vtkhdf -o warped.vtkhdf --memory 4G\n"
       "  mpirun -n 4 tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf\n");
   declare_warp_options(*command, *arguments);
   command->callback([arguments, command, &run] {
+    arguments->given = given_options(*command);
     check_complete(*arguments);
     if (!arguments->batch.empty() && launched_count() > 1) {
       throw CLI::ValidationError("--batch", "runs without mpirun; start one mpirun for each job");

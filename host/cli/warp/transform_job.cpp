@@ -31,10 +31,11 @@ const std::string order = "the order is: tetwarp warp IMAGE FIELD -o OUT";
 
 /// Throws std::invalid_argument for options that have no meaning without a mesh.
 void check_options(const WarpArguments& arguments, const CLI::App& command) {
-  const std::set<std::string> known{
-      "--output",  "--array",      "--source-step", "--axes",      "--grid",   "--like",
-      "--dims",    "--origin",     "--spacing",     "--direction", "--filter", "--overshoot",
-      "--outside", "--background", "--compress",    "--threads",   "--quiet",  "--backend"};
+  const std::set<std::string> known{"--output",    "--array",   "--source-step", "--axes",
+                                    "--fsl",       "--grid",    "--like",        "--dims",
+                                    "--origin",    "--spacing", "--direction",   "--filter",
+                                    "--overshoot", "--outside", "--background",  "--compress",
+                                    "--threads",   "--quiet",   "--backend"};
   for (const CLI::Option* const option : command.get_options()) {
     const std::string name = option->get_name();
     if (option->count() == 0 || name == "FILES" || known.contains(name)) continue;
@@ -45,6 +46,10 @@ void check_options(const WarpArguments& arguments, const CLI::App& command) {
   }
   if (arguments.warp.backend == Backend::cuda || arguments.warp.backend == Backend::reference) {
     throw std::invalid_argument("--backend: transforms run on cpu; leave it out");
+  }
+  if (extends(arguments.warp.outside)) {
+    throw std::invalid_argument(std::string("--outside ") + name_of(arguments.warp.outside) +
+                                " is for warps by a mesh; use background or identity");
   }
   if (arguments.grid.base == "bounds") {
     throw std::invalid_argument("--grid bounds is for warps by a mesh; name a volume instead");
@@ -123,7 +128,8 @@ void write_step(const WarpArguments& arguments,
 bool names_transform(const WarpArguments& arguments) {
   const std::string& last = arguments.files.back();
   std::error_code error;
-  return std::filesystem::exists(last, error) && is_transform_file(last);
+  return std::filesystem::exists(last, error) &&
+         is_transform_file(last, arguments.transform_options());
 }
 
 void run_transform_job(const WarpArguments& arguments, const CLI::App& command) {
@@ -139,7 +145,8 @@ void run_transform_job(const WarpArguments& arguments, const CLI::App& command) 
   for (const std::string& file : files_of_output(arguments.output, source.arrays)) {
     check_output_file(file, inputs);
   }
-  const TransformFile file = read_transform(arguments.files.back(), arguments.axes);
+  const TransformFile file = read_transform(arguments.files.back(), arguments.transform_options());
+  if (file.ends_with_field && command.count("--outside") == 0) options.only_in_field = true;
   const InterruptFlag flag;
   ProgressBar bar(!arguments.quiet, "warp", source.steps.size());
   OutputWriter writer(arguments.output, *options.output_grid, source.arrays,

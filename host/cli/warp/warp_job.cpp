@@ -20,6 +20,7 @@
 #include "host/cli/common/json_text.hpp"
 #include "host/cli/common/progress_bar.hpp"
 #include "host/cli/job/job_plan.hpp"
+#include "host/cli/job/provenance.hpp"
 #include "host/cli/warp/job_share.hpp"
 #include "io/files/finished_file.hpp"
 #include "io/files/memory.hpp"
@@ -138,6 +139,9 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   warn(step_warnings(arguments.mesh_file(), std::ssize(plan.mesh.header().times),
                      result.report.steps));
   result.report.timings.total = watch.seconds();
+  if (arguments.provenance && !arguments.dry_run && ranks.is_root()) {
+    write_provenance(arguments, plan, result);
+  }
   if (!arguments.report.empty() && ranks.is_root()) {
     write_finished_file(arguments.report, report_json(result) + "\n");
   }

@@ -2,6 +2,7 @@
 /// The program tetwarp-view, which `tetwarp view` starts: tetwarp-view NAME=VALUE...
 #include <X11/Xlib.h>
 
+#include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -61,6 +62,13 @@ void write_results(LiveSimulation& simulation, const ViewOptions& options) {
                       {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+volatile std::sig_atomic_t signal_number = 0;
+
+extern "C" void note_signal(int signal) {
+  signal_number = signal;
+}
+
+/// A signal ends it as the key q does.
 void run(const ViewOptions& options) {
   check_display();
   std::optional<InputLog> replay = replay_of(options);
@@ -74,7 +82,9 @@ void run(const ViewOptions& options) {
   const ViewScene scene = view_scene_of(*simulation, options);
   ViewWindow window(scene, *simulation, options);
   simulation->begin();
-  window.run();
+  std::signal(SIGINT, note_signal);
+  std::signal(SIGTERM, note_signal);
+  window.run(signal_number);
   const std::string problem = window.failure();
   if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   simulation->end();

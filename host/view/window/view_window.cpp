@@ -86,7 +86,8 @@ void ViewWindow::set_up_mouse() {
   events_->SetInteractorStyle(style_);
 }
 
-void ViewWindow::run() {
+void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
+  is_interrupted_ = &is_interrupted;
   while (!simulation_.frames().take()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   LiveFrame& frame = simulation_.frames().front();
   if (frame.points.empty() && frame.has_failed) return;
@@ -124,7 +125,8 @@ void ViewWindow::on_timer() {
   }
   const LiveFrame& frame = simulation_.frames().front();
   const bool is_limited = options_.steps.has_value() || !options_.replay.empty();
-  if (frame.is_last || (frame.has_failed && is_limited)) events_->TerminateApp();
+  const bool is_over = frame.is_last || (frame.has_failed && is_limited);
+  if (is_over || *is_interrupted_ != 0) events_->TerminateApp();
 }
 
 void ViewWindow::draw() {

@@ -1,6 +1,7 @@
 /// @file view_window.hpp
 /// ViewWindow: the window of a live simulation.
 #pragma once
+#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,8 +27,9 @@ class ViewWindow {
   /// @param scene, simulation, options  kept by the caller
   ViewWindow(const ViewScene& scene, LiveSimulation& simulation, const ViewOptions& options);
 
-  /// Draws until the user or the last step ends it.
-  void run();
+  /// Draws until the user, a signal or the last step ends it.
+  /// @param is_interrupted  not 0: a signal ends it
+  void run(const volatile std::sig_atomic_t& is_interrupted);
   /// Whether anything was drawn.
   bool has_picture() const { return volumes_.has_value(); }
   /// Writes what is shown. @pre has_picture() @throws IoError
@@ -67,6 +69,7 @@ class ViewWindow {
   int slow_frames_ = 0;           ///< drawn one after the other
   int pictures_ = 0;
   std::string note_;
+  const volatile std::sig_atomic_t* is_interrupted_ = nullptr;
   std::vector<Stopwatch> drawn_;  ///< since each picture of the last second
 };
 

@@ -2,6 +2,8 @@
 /// Images, rays and slices of warped volumes.
 #include "host/view/window/volume_actors.hpp"
 
+#include <vtkCullerCollection.h>
+#include <vtkFrustumCoverageCuller.h>
 #include <vtkImageProperty.h>
 #include <vtkPointData.h>
 #include <vtkVolumeProperty.h>
@@ -10,6 +12,7 @@
 
 namespace tetwarp::view {
 namespace {
+constexpr double opacity_lengths = 200;  // in the diagonal of a volume, for ColorPoint::opacity
 // Lengths of a ray between samples [voxels], and pixels between rays.
 constexpr double fine_step = 1, coarse_step = 4, coarse_pixels = 3;
 constexpr int gray_levels = 256, clear_levels = 8;  // of slices; the darkest are clear
@@ -47,6 +50,13 @@ VolumeActors::VolumeActors(const ViewScene& scene,
     renderer->AddVolume(drawn.rays);
     color(drawn);
   }
+  // Volumes are blended over what was drawn before them.
+  vtkCullerCollection* const cullers = renderer->GetCullers();
+  cullers->InitTraversal();
+  while (vtkCuller* const culler = cullers->GetNextItem()) {
+    auto* const sorting = vtkFrustumCoverageCuller::SafeDownCast(culler);
+    if (sorting != nullptr) sorting->SetSortingStyleToBackToFront();
+  }
 }
 
 void VolumeActors::color(Drawn& drawn) {
@@ -79,7 +89,8 @@ void VolumeActors::show(LiveFrame& frame) {
       drawn.mapper->SetSampleDistance(
           static_cast<float>((is_coarse_ ? coarse_step : fine_step) * grid.spacing[0]));
       drawn.mapper->SetImageSampleDistance(static_cast<float>(is_coarse_ ? coarse_pixels : 1));
-      drawn.rays->GetProperty()->SetScalarOpacityUnitDistance(grid.spacing[0]);
+      drawn.rays->GetProperty()->SetScalarOpacityUnitDistance(drawn.image->GetLength() /
+                                                              opacity_lengths);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         drawn.slice_mappers[axis]->SetSliceNumber(static_cast<int>(grid.dims[axis] / 2));
       }

@@ -14,6 +14,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/exec/exec_cpu.hpp"
 #include "host/warp/cpu/row_resample_cpu.hpp"
+#include "host/warp/cpu/transform_links.hpp"
 #include "host/warp/sources.hpp"
 #include "host/warp/transform_checks.hpp"
 #include "kernels/warp/row_resample.hpp"
@@ -46,15 +47,6 @@ IndexAffine index_map(const Grid& grid) {
   return map;
 }
 
-IndexAffine affine_map(const AffineTransform& affine) {
-  IndexAffine map;
-  for (std::size_t row = 0; row < 3; ++row) {
-    std::copy_n(affine.matrix.begin() + static_cast<std::ptrdiff_t>(3 * row), 3, map.linear[row]);
-    map.offset[row] = affine.offset[row];
-  }
-  return map;
-}
-
 /// a after b. Offsets are differences of positions that may be far from zero.
 IndexAffine composed(const IndexAffine& a, const IndexAffine& b) {
   IndexAffine map;
@@ -80,46 +72,30 @@ IndexAffine between_grids(const Grid& other, const Grid& output) {
   return affine;
 }
 
-void check_transform(const Transform& transform) {
-  if (const auto* const affine = std::get_if<AffineTransform>(&transform)) {
-    const auto is_finite = [](double x) { return std::isfinite(x); };
-    if (!std::all_of(affine->matrix.begin(), affine->matrix.end(), is_finite) ||
-        !std::all_of(affine->offset.begin(), affine->offset.end(), is_finite)) {
-      throw std::invalid_argument("transform: a number is not finite");
-    }
-    return;
-  }
-  const auto& field = std::get<DisplacementField>(transform);
-  check_grid(field.grid, "displacement field");
-  if (static_cast<std::int64_t>(field.displacement.size()) != 3 * field.grid.voxel_count()) {
-    throw std::invalid_argument("displacement field: expected three numbers for every voxel");
-  }
-}
-
-FieldView view_of(const DisplacementField& field) {
-  FieldView view;
-  view.vectors = field.displacement.data();
-  std::copy_n(field.grid.dims.begin(), 3, view.dims);
-  return view;
-}
-
+/// @param links  of the transform
 ResampleMap make_map(const Grid& source,
                      const Grid& output,
                      const Transform& transform,
+                     const std::vector<TransformLink>& links,
                      const ResampleOptions& options) {
   ResampleMap map{};
-  if (const auto* const affine = std::get_if<AffineTransform>(&transform)) {
-    map.to_source = composed(index_map(source), composed(affine_map(*affine), world_map(output)));
+  if (std::holds_alternative<AffineTransform>(transform)) {
+    map.to_source = composed(index_map(source), composed(links.front().affine, world_map(output)));
     return map;
   }
-  const auto& field = std::get<DisplacementField>(transform);
   map.to_source = between_grids(source, output);
-  map.field = view_of(field);
-  map.is_field_grid = field.grid == output;
-  map.to_field = between_grids(field.grid, output);
   map.only_in_field = options.only_in_field;
   const IndexFromWorld from_world = index_from_world(source);
   for (int row = 0; row < 3; ++row) std::copy_n(from_world.linear[row], 3, map.from_world[row]);
+  const auto* const field = std::get_if<DisplacementField>(&transform);
+  if (field == nullptr) {
+    map.links = {links.data(), std::ssize(links)};
+    map.to_world = world_map(output);
+    return map;
+  }
+  map.field = links.front().field;
+  map.is_field_grid = field->grid == output;
+  map.to_field = between_grids(field->grid, output);
   return map;
 }
 
@@ -142,29 +118,9 @@ WarpPlan make_plan(std::span<const VolumeView> sources, const ResampleOptions& o
 }  // namespace
 
 std::vector<Point3> transformed(const Transform& transform, std::vector<Point3> points) {
-  check_transform(transform);
-  if (const auto* const affine = std::get_if<AffineTransform>(&transform)) {
-    const IndexAffine map = affine_map(*affine);
-    for (Point3& point : points) {
-      const Point3 x = point;
-      map.map(x.data(), point.data());
-    }
-    return points;
-  }
-  const auto& field = std::get<DisplacementField>(transform);
-  const FieldView view = view_of(field);
-  const IndexFromWorld from_world = index_from_world(field.grid);
+  const std::vector<TransformLink> links = links_of(transform);
   for (Point3& point : points) {
-    double index[3], vector[3];
-    for (int row = 0; row < 3; ++row) {
-      index[row] = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        index[row] += from_world.linear[row][axis] *
-                      (point[static_cast<std::size_t>(axis)] - from_world.origin[axis]);
-      }
-    }
-    view.sample(index, vector);
-    for (std::size_t axis = 0; axis < 3; ++axis) point[axis] += vector[axis];
+    for (const TransformLink& link : links) link.move(point.data());
   }
   return points;
 }
@@ -174,7 +130,7 @@ void resample(std::span<const VolumeView> sources,
               const ResampleOptions& options,
               std::span<void* const> outputs,
               const Progress& progress) {
-  check_transform(transform);
+  const std::vector<TransformLink> links = links_of(transform);
   const WarpPlan plan = make_plan(sources, options);
   if (outputs.size() != sources.size() ||
       std::find(outputs.begin(), outputs.end(), nullptr) != outputs.end()) {
@@ -184,7 +140,7 @@ void resample(std::span<const VolumeView> sources,
   CpuExec exec(threads, StageClocks::off);
   WarpSources<CpuExec> data(exec, plan);
   const Grid& output = plan.output_grid;
-  const ResampleMap map = make_map(sources.front().grid, output, transform, options);
+  const ResampleMap map = make_map(sources.front().grid, output, transform, links, options);
   const std::int64_t lines = resample_lines(output.dims.data());
   constexpr std::int64_t part_voxels = 1 << 22;  // between two reports of progress
   const std::int64_t part =

@@ -72,7 +72,7 @@ class RowResampler {
       whole[axis] = static_cast<int>(lower);
     }
     const bool is_field_grid = op_.map.is_field_grid;
-    const bool has_field = op_.map.field.vectors != nullptr;
+    const bool has_field = op_.map.has_displacements();
     unsigned inside = 0, in_field = 0xff;
     if (has_field && !is_field_grid) in_field = sample_field(i, j, k);
     const float* const field = is_field_grid ? op_.map.field.at(i, j, k) : sampled_;

@@ -1,0 +1,103 @@
+"""Images and meshes of other packages, as far as these are installed."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+DIRECTION = ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@pytest.fixture(params=[(), (3,)], ids=["numbers", "vectors"])
+def turned(request):
+    """A volume on a turned grid of three different lengths."""
+    array = np.random.default_rng(1).random((3, 4, 5, *request.param)).astype(np.float32)
+    return tetwarp.Volume(array, tetwarp.Grid((3, 4, 5), (1, 2, 3), (10, 20, 30), DIRECTION))
+
+
+@pytest.mark.parametrize("axes", ["RAS", "LPS"])
+def test_nibabel_there_and_back(turned, axes):
+    pytest.importorskip("nibabel")
+
+    image = tetwarp.to_nibabel(turned, axes=axes)
+
+    back = tetwarp.volume_from(image, axes=axes)
+    assert np.array_equal(back.array, turned.array)
+    assert np.allclose(back.affine, turned.affine)
+    assert image.get_fdata()[4, 1, 2].tolist() == turned.array[2, 1, 4].tolist()
+    place = image.affine @ (4, 1, 2, 1)
+    signs = (1, 1, 1, 1) if axes == "RAS" else (-1, -1, 1, 1)
+    assert np.allclose(place * signs, turned.affine @ (4, 1, 2, 1))
+
+
+@pytest.mark.parametrize("axes", ["RAS", "LPS"])
+def test_sitk_there_and_back(turned, axes):
+    pytest.importorskip("SimpleITK")
+
+    image = tetwarp.to_sitk(turned, axes=axes)
+
+    back = tetwarp.volume_from(image, axes=axes)
+    assert np.array_equal(back.array, turned.array)
+    assert np.allclose(back.affine, turned.affine)
+    assert np.array_equal(image[4, 1, 2], turned.array[2, 1, 4])
+    place = np.append(image.TransformIndexToPhysicalPoint((4, 1, 2)), 1)
+    signs = (1, 1, 1, 1) if axes == "LPS" else (-1, -1, 1, 1)
+    assert np.allclose(place * signs, turned.affine @ (4, 1, 2, 1))
+
+
+@pytest.mark.parametrize("axes", ["RAS", "LPS"])
+def test_sitk_resamples_by_the_field_as_the_warp(volume, mesh, twisted, axes):
+    sitk = pytest.importorskip("SimpleITK")
+    field = tetwarp.displacement_field(*mesh, twisted, reference=volume)
+    transform = tetwarp.to_sitk_transform(field, axes=axes)
+    image = tetwarp.to_sitk(volume, axes=axes)
+
+    resampled = sitk.GetArrayFromImage(sitk.Resample(image, image, transform, sitk.sitkLinear))
+
+    warped = tetwarp.warp(volume, *mesh, twisted, interpolator="linear").volume
+    inside = field.mask & (resampled != 0) & (warped != 0)
+    assert inside.mean() > 0.2
+    assert np.abs(resampled - warped)[inside].max() < 1e-3 * np.abs(warped).max()
+
+
+def test_pyvista_gets_images_and_meshes(turned, mesh, twisted):
+    pytest.importorskip("pyvista")
+
+    image = tetwarp.to_pyvista(turned)
+    grid = tetwarp.to_pyvista(mesh, twisted)
+
+    assert image.dimensions == (5, 4, 3) and image.n_points == 60
+    assert np.allclose(image.points[0], turned.grid.origin)
+    assert np.array_equal(image.point_data["values"][1], turned.array[0, 0, 1])
+    back = tetwarp.mesh_from(grid)
+    assert np.allclose(back.points, twisted) and np.array_equal(back.cells, mesh.cells)
+
+
+def test_meshio_there_and_back(mesh, tmp_path):
+    meshio = pytest.importorskip("meshio")
+
+    meshio.write(tmp_path / "mesh.inp", tetwarp.to_meshio(mesh))
+
+    back = tetwarp.mesh_from(meshio.read(tmp_path / "mesh.inp"))
+    assert np.allclose(back.points, mesh.points) and np.array_equal(back.cells, mesh.cells)
+
+
+def test_wrong_arguments_are_named(turned, monkeypatch):
+    with pytest.raises(ValueError, match="image: expected an image of nibabel or SimpleITK"):
+        tetwarp.volume_from(np.zeros(3), axes="RAS")
+    monkeypatch.setitem(sys.modules, "meshio", None)
+    with pytest.raises(ImportError, match="to_meshio: expected meshio; python3 -m pip install"):
+        tetwarp.to_meshio((np.eye(4, 3), [[0, 1, 2, 3]]))
+    monkeypatch.setitem(sys.modules, "SimpleITK", type(sys)("SimpleITK"))
+    with pytest.raises(ValueError, match="axes: expected 'RAS' or 'LPS', got 'LAS'"):
+        tetwarp.to_sitk(turned, axes="LAS")
+
+
+def test_other_cells_are_no_mesh():
+    blocks = {"triangle": np.array([(0, 1, 2)]), "wedge": np.array([(0, 1, 2, 3, 4, 5)])}
+    other = type("Mesh", (), {"points": np.zeros((6, 3)), "cells_dict": blocks})
+
+    with pytest.raises(ValueError, match="mesh: expected linear tetrahedra.* found cells of wedge"):
+        tetwarp.mesh_from(other)

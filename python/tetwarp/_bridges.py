@@ -1,0 +1,195 @@
+"""Images and meshes of other packages: nibabel, SimpleITK, PyVista, meshio. Each is imported when it
+is needed; none is required.
+
+The axes of the world differ: nibabel's are right, anterior, superior (RAS), those of SimpleITK left,
+posterior, superior (LPS). Functions for them take the axes of the caller's world, which meshes
+share; PyVista and meshio have no axes of their own.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+import numpy as np
+
+from ._arrays import cells_of, nodes_of
+from ._fields import Field
+from ._grid import Grid, reference_grid
+from ._mesh import Mesh, joined_cells
+from ._volume import Volume
+
+
+def _package(name: str, function: str, pip: str) -> Any:
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise ImportError(f"{function}: expected {pip}; python3 -m pip install {pip}") from None
+
+
+def _signs(axes: str, native: str) -> np.ndarray:
+    """What turns x y z of one world into those of the other."""
+    if axes not in ("RAS", "LPS"):
+        raise ValueError(f"axes: expected 'RAS' or 'LPS', got {axes!r}")
+    return np.array((1.0, 1, 1) if axes == native else (-1.0, -1, 1))
+
+
+def _turned(grid: Grid, signs: np.ndarray) -> Grid:
+    return Grid(grid.shape, grid.spacing, tuple(signs * grid.origin),
+                tuple(map(tuple, signs[:, None] * np.array(grid.direction))))
+
+
+def _rows_first(array: np.ndarray) -> np.ndarray:
+    """Axes x and z exchanged; components stay last."""
+    return np.ascontiguousarray(array.swapaxes(0, 2))
+
+
+def volume_from(image: Any, *, axes: str) -> Volume:
+    """An image of nibabel or SimpleITK as a Volume, a copy.
+
+    Parameters
+    ----------
+    image : a NIfTI image of nibabel, scaled as its header says, or an image of SimpleITK
+    axes : of the world that it is brought to: ``"RAS"`` or ``"LPS"``
+
+    Raises
+    ------
+    ValueError
+        `image` is of another kind, or `axes` another word.
+    """
+    if hasattr(image, "dataobj"):
+        array = np.asarray(image.dataobj)
+        if array.ndim == 5 and array.shape[3] == 1:  # vectors of NIfTI
+            array = array[:, :, :, 0]
+        return Volume(_rows_first(array), _turned(reference_grid(image), _signs(axes, "RAS")))
+    if hasattr(image, "GetPixelIDTypeAsString"):
+        sitk = _package("SimpleITK", "volume_from", "SimpleITK")
+        return Volume(sitk.GetArrayFromImage(image),
+                      _turned(reference_grid(image), _signs(axes, "LPS")))
+    raise ValueError(
+        f"image: expected an image of nibabel or SimpleITK, got {type(image).__name__}"
+    )
+
+
+def to_nibabel(volume: Volume, *, axes: str) -> Any:
+    """A Volume as a `Nifti1Image`; `axes` of its world are ``"RAS"`` or ``"LPS"``.
+
+    Raises
+    ------
+    ImportError
+        nibabel is not installed.
+    """
+    nibabel = _package("nibabel", "to_nibabel", "nibabel")
+    grid = _turned(volume.grid, _signs(axes, "RAS"))
+    array = volume.array.swapaxes(0, 2)
+    return nibabel.Nifti1Image(array, grid.affine, dtype=array.dtype)
+
+
+def _sitk_image(sitk: Any, array: np.ndarray, grid: Grid) -> Any:
+    image = sitk.GetImageFromArray(array, isVector=array.ndim == 4)
+    image.SetSpacing(grid.spacing)
+    image.SetOrigin(grid.origin)
+    image.SetDirection(np.ravel(grid.direction).tolist())
+    return image
+
+
+def to_sitk(volume: Volume, *, axes: str) -> Any:
+    """A Volume as an image of SimpleITK; `axes` of its world are ``"RAS"`` or ``"LPS"``.
+
+    Raises
+    ------
+    ImportError
+        SimpleITK is not installed.
+    """
+    sitk = _package("SimpleITK", "to_sitk", "SimpleITK")
+    return _sitk_image(sitk, volume.array, _turned(volume.grid, _signs(axes, "LPS")))
+
+
+def to_sitk_transform(field: Field, *, axes: str) -> Any:
+    """A field of `displacement_field` as a `DisplacementFieldTransform` of SimpleITK, for
+    ``SimpleITK.Resample``; `axes` of its world are ``"RAS"`` or ``"LPS"``.
+
+    Raises
+    ------
+    ImportError
+        SimpleITK is not installed.
+    ValueError
+        `field` has not three components.
+    """
+    sitk = _package("SimpleITK", "to_sitk_transform", "SimpleITK")
+    if field.values.ndim != 4 or field.values.shape[3] != 3:
+        raise ValueError(f"field: expected displacements, (z, y, x, 3), got {field.values.shape}")
+    signs = _signs(axes, "LPS")
+    image = _sitk_image(sitk, field.values * signs, _turned(field.grid, signs))
+    return sitk.DisplacementFieldTransform(image)
+
+
+def to_pyvista(value: Any, deformed: Any = None) -> Any:
+    """A Volume as an `ImageData` of PyVista with the samples at its points, or a mesh, (nodes,
+    cells), as an `UnstructuredGrid`, at `deformed` if it is given.
+
+    Raises
+    ------
+    ImportError
+        PyVista is not installed.
+    """
+    pyvista = _package("pyvista", "to_pyvista", "pyvista")
+    if isinstance(value, Volume):
+        grid = value.grid
+        image = pyvista.ImageData(dimensions=grid.shape[::-1], spacing=grid.spacing,
+                                  origin=grid.origin, direction_matrix=np.array(grid.direction))
+        image.point_data[value.name] = value.array.reshape(np.prod(grid.shape), -1).squeeze()
+        return image
+    points, tets, hexes = _parts(value)
+    place = points if deformed is None else nodes_of(deformed, "deformed", len(points))
+    cells = {pyvista.CellType.TETRA: tets, pyvista.CellType.HEXAHEDRON: hexes}
+    return pyvista.UnstructuredGrid({kind: part for kind, part in cells.items() if len(part)}, place)
+
+
+def _parts(mesh: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    points = nodes_of(mesh[0], "nodes")
+    return (points, *cells_of(mesh[1], "cells", len(points)))
+
+
+def to_meshio(mesh: Any, **data: Any) -> Any:
+    """A mesh, (nodes, cells), as a `meshio.Mesh`; `data` are further arguments, as point_data.
+
+    Raises
+    ------
+    ImportError
+        meshio is not installed.
+    """
+    meshio = _package("meshio", "to_meshio", "meshio")
+    points, tets, hexes = _parts(mesh)
+    cells = [(kind, part) for kind, part in (("tetra", tets), ("hexahedron", hexes)) if len(part)]
+    return meshio.Mesh(points, cells, **data)
+
+
+def mesh_from(mesh: Any) -> Mesh:
+    """The tetrahedra and hexahedra of a `meshio.Mesh` or an `UnstructuredGrid` of PyVista.
+
+    Raises
+    ------
+    ValueError
+        it has none, or cells of other volume elements, which would be missing.
+
+    >>> import types
+    >>> blocks = {"tetra": np.array([(0, 1, 2, 3)])}
+    >>> mesh_from(types.SimpleNamespace(points=np.eye(4, 3), cells_dict=blocks))
+    Mesh(4 nodes, 1 cells)
+    """
+    kinds = {10: "tetra", 12: "hexahedron"}  # numbers of VTK
+    blocks: dict[Any, Any] = {}
+    for kind, part in mesh.cells_dict.items():
+        blocks[kinds.get(kind, kind)] = part
+    flat = {"vertex", "line", "triangle", "quad", 1, 3, 5, 9}
+    others = [str(kind) for kind in blocks if kind not in kinds.values() and kind not in flat]
+    if others:
+        raise ValueError(
+            f"mesh: expected linear tetrahedra and hexahedra, found cells of {', '.join(others)}"
+        )
+    points = nodes_of(mesh.points, "mesh")
+    parts = (np.reshape(blocks.get("tetra", ()), (-1, 4)).astype(np.int32),
+             np.reshape(blocks.get("hexahedron", ()), (-1, 8)).astype(np.int32))
+    cells_of(parts, "mesh", len(points))
+    return Mesh(points, joined_cells(*parts))

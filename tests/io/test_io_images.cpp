@@ -1,0 +1,190 @@
+/// @file test_io_images.cpp
+/// NRRD files, MetaImages and FreeSurfer's images that the writer made, read again: series, pairs,
+/// packed ones, regions. Against other programs: tests/io/check_images.py.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/io_files.hpp"
+
+namespace tetwarp::test {
+namespace {
+/// A step of a series, different in every sample.
+Volume image_step(PixelType type, int components, int step) {
+  Volume volume = counting_volume(type, components);
+  for (std::size_t b = 0; b < volume.data.size(); b += size_of(type)) {
+    volume.data[b] = static_cast<std::byte>((b * 7 + static_cast<std::size_t>(31 * step)) % 120);
+  }
+  return volume;
+}
+
+void write_image(const std::string& path,
+                 const std::vector<Volume>& steps,
+                 int compress,
+                 bool is_temporal) {
+  const Volume& first = steps.front();
+  BlockVolumeWriter writer(path, first.grid, {{first.name, first.type, first.components}},
+                           {.compress = compress}, is_temporal);
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    const double time = 4 + 0.5 * static_cast<double>(s);
+    if (is_temporal && s + 1 == steps.size() && s > 0) {
+      writer.repeat_step(time);
+      continue;
+    }
+    if (is_temporal) writer.begin_step(time);
+    for (const std::int64_t k : {2, 0}) {  // in blocks, the last first
+      const Region region{{0, 0, k}, {first.grid.dims[0], first.grid.dims[1], k + 2}};
+      const std::size_t slice = first.data.size() / static_cast<std::size_t>(first.grid.dims[2]);
+      writer.write(0, region, steps[s].data.data() + slice * static_cast<std::size_t>(k));
+    }
+  }
+  writer.finish();
+}
+
+void expect_grid(const Grid& found, const Grid& expected, double tolerance) {
+  EXPECT_EQ(found.dims, expected.dims);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(found.origin[axis], expected.origin[axis], tolerance);
+    EXPECT_NEAR(found.spacing[axis], expected.spacing[axis], tolerance);
+  }
+  for (std::size_t n = 0; n < 9; ++n) {
+    EXPECT_NEAR(found.direction[n], expected.direction[n], tolerance);
+  }
+}
+
+/// FreeSurfer stores float32 numbers: 1e-3 of an origin of 1e4.
+double grid_tolerance(const std::string& name) {
+  return name.find(".mg") != std::string::npos ? 2e-3 : 1e-9;
+}
+
+const std::vector<std::string> image_names{"a.nrrd", "a.mha", "a.mhd", "a.mgh", "a.mgz"};
+
+TEST(Images, AreReadAsTheyWereWritten) {
+  for (const std::string& name : image_names) {
+    const bool is_mgh = name.find(".mg") != std::string::npos;
+    for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::float32}) {
+      for (const int compress : {0, 3}) {
+        const ScratchFolder folder;
+        const Volume volume = image_step(type, is_mgh ? 1 : 3, 0);
+        write_image(folder / name, {volume}, compress, false);
+
+        const Volume whole = read_volume(folder / name);
+
+        EXPECT_EQ(whole.data, volume.data) << name << name_of(type) << compress;
+        EXPECT_EQ(whole.type, type);
+        expect_grid(whole.grid, volume.grid, grid_tolerance(name));
+        EXPECT_TRUE(read_volume_header(folder / name).times.empty());
+        EXPECT_TRUE(read_volume_header(folder / name).left_out.empty()) << name;
+        EXPECT_EQ(folder.entry_count(), name == "a.mhd" ? 2 : 1);
+        std::vector<std::byte> voxel(static_cast<std::size_t>(whole.components) * size_of(type));
+        VolumeReader(folder / name).read({{6, 3, 2}, {7, 4, 3}}, voxel.data());
+        const std::size_t at = static_cast<std::size_t>((2 * 5 + 3) * 7 + 6) * voxel.size();
+        EXPECT_TRUE(std::equal(voxel.begin(), voxel.end(),
+                               volume.data.begin() + static_cast<std::ptrdiff_t>(at)));
+      }
+    }
+  }
+}
+
+TEST(Images, HoldSeriesWithTheirTimes) {
+  for (const std::string& name : image_names) {
+    const bool is_mgh = name.find(".mg") != std::string::npos;
+    for (const int compress : {0, 3}) {
+      const ScratchFolder folder;
+      std::vector<Volume> steps;
+      for (int s = 0; s < 3; ++s) steps.push_back(image_step(PixelType::int16, 1, s));
+      write_image(folder / name, steps, compress, true);
+
+      const VolumeHeader header = read_volume_header(folder / name);
+
+      EXPECT_EQ(header.times,
+                (is_mgh ? std::vector<double>{0, 1, 2} : std::vector<double>{4, 4.5, 5}))
+          << name;
+      EXPECT_EQ(read_volume(folder / name, {}, 0).data, steps[0].data) << name;
+      EXPECT_EQ(read_volume(folder / name, {}, 1).data, steps[1].data) << name;
+      EXPECT_EQ(read_volume(folder / name, {}, 2).data, steps[1].data) << name;
+      std::int16_t voxel = 0;
+      VolumeReader(folder / name, {}, 1).read({{6, 4, 3}, {7, 5, 4}}, &voxel);
+      EXPECT_EQ(voxel, steps[1].samples<std::int16_t>().back()) << name;
+      EXPECT_NE(message_of<IoError>([&] { read_volume(folder / name, {}, 3); }).find("no step 3"),
+                std::string::npos);
+      expect_grid(header.grid, steps[0].grid, grid_tolerance(name));
+    }
+  }
+}
+
+TEST(Images, OfComponentsHoldSeries) {
+  for (const std::string name : {"a.nrrd", "a.mha"}) {
+    const ScratchFolder folder;
+    const std::vector<Volume> steps{image_step(PixelType::uint8, 4, 0),
+                                    image_step(PixelType::uint8, 4, 1),
+                                    image_step(PixelType::uint8, 4, 2)};
+    write_image(folder / name, steps, 0, true);
+
+    EXPECT_EQ(read_volume_header(folder / name).arrays.front().components, 4);
+    EXPECT_EQ(read_volume(folder / name, {}, 1).data, steps[1].data);
+  }
+}
+
+TEST(Images, ThatTheirFormatDoesNotHoldAreRefused) {
+  const ScratchFolder folder;
+  const auto message = [&](const std::string& name, PixelType type, int components) {
+    return message_of<IoError>(
+        [&] { write_image(folder / name, {image_step(type, components, 0)}, 0, false); });
+  };
+  EXPECT_NE(message("a.mgz", PixelType::float64, 1).find("holds no float64"), std::string::npos);
+  EXPECT_NE(message("a.mgh", PixelType::uint8, 3).find("one number per voxel"), std::string::npos);
+  std::ofstream(folder / "b.raw") << "of another program";
+  EXPECT_NE(message("b.mhd", PixelType::uint8, 1).find("would replace"), std::string::npos);
+  EXPECT_EQ(bytes_of(folder / "b.raw"), "of another program");
+}
+
+/// As 3D Slicer and teem write them: time along the last axis.
+TEST(Images, OfNrrdTellTimeByTheKindOrTheDirection) {
+  const ScratchFolder folder;
+  const std::string begin =
+      "NRRD0004\ntype: uint8\ndimension: 4\nspace: RAS\nsizes: 2 3 1 2\nencoding: raw\n"
+      "space origin: (0,0,0)\nspace directions: (1,0,0) (0,1,0) (0,0,1) none\n";
+  const std::string samples = "\nabcdefghijkl";
+  for (const std::string extra : {"", "kinds: domain domain domain time\n",
+                                  "spacings: NaN NaN NaN 250\nunits: \"mm\" \"mm\" "
+                                  "\"mm\" \"ms\"\n"}) {
+    std::ofstream(folder / "a.nrrd") << begin << extra << samples;
+    const VolumeHeader header = read_volume_header(folder / "a.nrrd");
+    ASSERT_EQ(header.times.size(), 2U);
+    EXPECT_EQ(header.times[1], extra.starts_with("spacings") ? 0.25 : 1);
+    EXPECT_EQ(static_cast<char>(read_volume(folder / "a.nrrd", {}, 1).data.front()), 'g');
+  }
+  std::ofstream(folder / "a.nrrd") << begin << "kinds: domain domain domain domain\n" << samples;
+  EXPECT_NE(message_of<IoError>([&] { read_volume(folder / "a.nrrd"); }).find("kinds"),
+            std::string::npos);
+}
+
+/// Bytes by hand: big-endian, without a direction.
+TEST(Images, OfFreeSurferWithoutADirectionAreCoronal) {
+  const ScratchFolder folder;
+  std::string bytes(284, '\0');
+  bytes[3] = 1;
+  for (const std::size_t place : {7, 11, 15, 19}) bytes[place] = place == 19 ? 1 : 2;
+  bytes[23] = 4;  // int16
+  for (int n = 0; n < 8; ++n) bytes += {static_cast<char>(1), static_cast<char>(n)};
+  std::ofstream(folder / "a.mgh", std::ios::binary) << bytes;
+
+  const Volume volume = read_volume(folder / "a.mgh");
+
+  EXPECT_EQ(volume.samples<std::int16_t>()[5], 0x105);
+  EXPECT_EQ(volume.grid.direction, (std::array<double, 9>{-1, 0, 0, 0, 0, 1, 0, -1, 0}));
+  EXPECT_EQ(volume.grid.origin, (Point3{1, -1, 1}));
+  std::ofstream(folder / "a.mgh", std::ios::binary | std::ios::app) << "tags";
+  EXPECT_EQ(read_volume_header(folder / "a.mgh").left_out.size(), 1U);
+  std::ofstream(folder / "b.mgh", std::ios::binary) << bytes.substr(0, 290);
+  EXPECT_NE(message_of<IoError>([&] { read_volume(folder / "b.mgh"); }).find("truncated"),
+            std::string::npos);
+}
+}  // namespace
+}  // namespace tetwarp::test
