@@ -81,8 +81,8 @@ tetwarp_sources(tetwarp host/simulate/solve/problem
   step_laws.cpp step_problem.cpp step_rows.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/two_level
   compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp group_matrices.cpp
-  packed_contacts.cpp taken_islands.cpp touching_blocks.cpp touching_matrix.cpp touching_newton.cpp
-  touching_sweep.cpp two_level_on_device.cpp two_level_solver.cpp two_level_step.cpp
+  packed_contacts.cpp touching_blocks.cpp touching_matrix.cpp touching_newton.cpp
+  touching_sweep.cpp two_level_solver.cpp two_level_start.cpp two_level_step.cpp
   two_level_sweeps.cpp unit_velocities.cpp)
 tetwarp_sources(tetwarp host/simulate/start
   cage_growth.cpp cage_pose.cpp inset_places.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp

@@ -206,7 +206,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_solver.cpp
     tests/contact/test_contact_sweep.cpp
     tests/contact/test_contact_analysis.cpp tests/contact/test_contact_bilateral.cpp
-    tests/contact/test_contact_ellipse.cpp tests/contact/test_contact_rolling.cpp)
+    tests/contact/test_contact_ellipse.cpp tests/contact/test_contact_rolling.cpp
+    tests/contact/test_coupled_iteration.cpp)
   tetwarp_discover(tetwarp_contact_tests unit)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES

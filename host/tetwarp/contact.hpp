@@ -69,7 +69,8 @@ enum class ContactCoupling {
   iterated    ///< outer block-Jacobi iteration around sweeps; memory proportional to that of A
 };
 
-/// Arithmetic of the iterations; results are always measured in float64.
+/// Arithmetic of sweeps; results are always measured in float64. Iterations over bodies that A
+/// couples are in float64.
 enum class ContactPrecision { float64, float32 };
 
 /// Work that is left out because it cannot change the solution by more than the tolerance; a member

@@ -91,11 +91,25 @@ class ContactPipeline {
                              state_.body_velocity});
   }
 
+  /// Sets u to J v + w. @param v  [dofs] of the whole problem; in local form not read
+  TETWARP_ANY_EXEC void find_velocities(View<const T> v) {
+    const std::int64_t first = island_.slot_begin, count = island_.contact_count();
+    if (numbers_.is_local) {
+      contact_velocities(exec_, first, count,
+                         ContactVelocityOp<DelassusView<T>, T>{
+                             numbers_.delassus, state_.impulse.data, state_.velocity});
+    } else {
+      contact_velocities(
+          exec_, first, count,
+          ContactVelocityOp<BodiesView<T>, T>{numbers_.bodies, v.data, state_.velocity});
+    }
+  }
+
   /// Residual of the current r and v. Unless `is_final`, ContactSums::magnitude stays 0 where its
   /// bound shows that rounding of the work does not matter.
   TETWARP_ANY_EXEC ContactSums measure(bool is_final = false) {
     constexpr double cancellation = 0x1p25;
-    find_velocities();
+    find_velocities(state_.body_velocity);
     ContactSums sums =
         contact_residual(exec_, island_.slot_begin, island_.slot_end,
                          ContactResidualOp<T>{numbers_.constants, switches_, state_.impulse,
@@ -133,19 +147,6 @@ class ContactPipeline {
   }
 
  private:
-  TETWARP_ANY_EXEC void find_velocities() {
-    const std::int64_t first = island_.slot_begin, count = island_.contact_count();
-    if (numbers_.is_local) {
-      contact_velocities(exec_, first, count,
-                         ContactVelocityOp<DelassusView<T>, T>{
-                             numbers_.delassus, state_.impulse.data, state_.velocity});
-    } else {
-      contact_velocities(exec_, first, count,
-                         ContactVelocityOp<BodiesView<T>, T>{
-                             numbers_.bodies, state_.body_velocity.data, state_.velocity});
-    }
-  }
-
   Exec& exec_;
   ContactNumbers<T> numbers_;
   View<const std::int64_t> color_start_;

@@ -123,7 +123,7 @@ struct DefectSquareOp {
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{defect[i] * moved[i]}}; }
 };
 
-/// One index = one contact: natural_square(), and r . (u - u without impulses).
+/// One index = one contact: eta_square(), and r . (u - u without impulses).
 struct TouchErrorOp {
   View<const ContactConstants<double>> constants;
   ContactSwitches switches;
@@ -134,7 +134,7 @@ struct TouchErrorOp {
     const double* const r = impulse.data + 3 * contact;
     const double* const u = velocity.data + 3 * contact;
     PlainSums<2> sums;
-    sums.value[0] = natural_square(own, switches, normal_weight(own), tangent_weight(own), r, u);
+    sums.value[0] = eta_square(own, switches, r, u);
     for (int a = 0; a < 3; ++a) sums.value[1] += r[a] * (u[a] - free_velocity[3 * contact + a]);
     return sums;
   }

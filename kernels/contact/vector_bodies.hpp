@@ -35,23 +35,19 @@ struct SquareOp {
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{square_of(double{in[i]})}}; }
 };
 
+/// One index = one entry: its term of d . (to - from).
+struct MoveSquareOp {
+  View<const double> d, from, to;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{d[i] * (to[i] - from[i])}}; }
+};
+
 /// One index = one entry: 1 if it is not zero.
 template <class T>
 struct NonzeroOp {
   View<const T> in;
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{in[i] != 0 ? 1.0 : 0.0}}; }
-};
-
-/// One index = one entry: its term in the squared norm of a vector in a diagonal metric.
-template <class T>
-struct SizeOp {
-  View<const double> weights;
-  View<const T> x;
-
-  TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
-    return {{weights[i] * square_of(double{x[i]})}};
-  }
 };
 
 template <class Exec, class T>

@@ -102,11 +102,10 @@ TEST(BlockJacobi, IsExactInOneStepWhereNothingIsCoupled) {
                          view_of(stages.structure.color_start),
                          stages.system.numbers(stages.structure.indices()),
                          {},
-                         {},
                          1};
   BlockJacobiMemory<CpuExec> memory;
   ResidualEstimator<CpuExec> estimator(exec, task, memory.estimator);
-  BlockJacobi<CpuExec> block_jacobi(exec, task, estimator, memory.fine);
+  BlockJacobi<CpuExec> block_jacobi(exec, task, estimator, memory.iteration);
   const std::vector<double> no_impulse(problem.velocity_offset.size(), 0.0);
   const std::vector<double> no_velocity(problem.load.size(), 0.0);
   IslandOutcome outcome;

@@ -183,8 +183,8 @@ TEST(ContactSolver, TheHistoryEndsWithTheResidual) {
   }
 }
 
-/// Bodies that A couples are iterated in float32 first and, if that is not enough, in float64.
-TEST(ContactSolver, IteratesInFloat32FirstWithThatOption) {
+/// Iterations over bodies that A couples are in float64 with either precision.
+TEST(ContactSolver, IteratesCoupledBodiesInFloat64) {
   const ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
   ContactOptions options = {.max_sweeps = 100000,
                             .expert = {.coupling = ContactCoupling::iterated}};
@@ -194,11 +194,11 @@ TEST(ContactSolver, IteratesInFloat32FirstWithThatOption) {
     const ContactSolution fine = solve_contacts(problem, options);
     options.precision = ContactPrecision::float32;
 
-    const ContactSolution coarse = solve_contacts(problem, options);
+    const ContactSolution other = solve_contacts(problem, options);
 
-    EXPECT_TRUE(coarse.converged()) << tolerance;
-    EXPECT_LE(residual_of(problem, coarse.impulse, coarse.body_velocity).eta, tolerance);
-    EXPECT_NE(coarse.impulse, fine.impulse) << tolerance;
+    EXPECT_TRUE(fine.converged()) << tolerance;
+    EXPECT_LE(residual_of(problem, fine.impulse, fine.body_velocity).eta, tolerance);
+    EXPECT_EQ(other.impulse, fine.impulse) << tolerance;
   }
 }
 }  // namespace

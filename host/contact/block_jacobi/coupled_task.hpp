@@ -2,7 +2,6 @@
 /// Input and output of a solve for an island whose blocks A couples.
 #pragma once
 #include <cstdint>
-#include <type_traits>
 
 #include <tetwarp/contact.hpp>
 
@@ -18,21 +17,11 @@ struct CoupledTask {
   const ContactIsland& island;
   View<const std::int64_t> color_start;  ///< of all islands, in memory of the host
   ContactNumbers<double> numbers;
-  ContactNumbers<float> rounded;  ///< `numbers` in float32; read if options.precision is float32
   View<const double> guess;       ///< impulses to start from, [3 slots]; empty: zero
   std::int64_t max_iterations;    ///< outer iterations
   SolveBudget* budget = nullptr;  ///< ends the iteration; null: no limits
 
   bool is_over() const { return budget != nullptr && budget->is_over(); }
-
-  template <class T>
-  const ContactNumbers<T>& numbers_in() const {
-    if constexpr (std::is_same_v<T, double>) {
-      return numbers;
-    } else {
-      return rounded;
-    }
-  }
 };
 
 /// Impulses and velocities of a whole problem, set in one island only.

@@ -158,6 +158,8 @@ class ResidualEstimator {
   /// v of the impulses of the last call, [dofs].
   View<const double> body_velocity() const { return view_of(memory_.body_velocity); }
 
+  /// u without impulses, [3 slots].
+  View<const double> free_velocity() const { return view_of(std::as_const(memory_.free_velocity)); }
   /// The pair with the smallest residual so far; views of `memory`.
   CoupledSolution best() const {
     return {view_of(std::as_const(memory_.best_impulse)),

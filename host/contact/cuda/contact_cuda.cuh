@@ -58,8 +58,7 @@ class CudaContactDevice final : public ContactDevice {
     exec_.put(guess, guess_);
     const auto colors = view_of(structure_->color_start);
     const auto start = view_of(std::as_const(guess_));
-    const CoupledTask task{options,           island, colors,         runs_.numbers(),
-                           runs_.numbers32(), start,  max_iterations, budget};
+    const CoupledTask task{options, island, colors, runs_.numbers(), start, max_iterations, budget};
     const CoupledSolution best = solve_coupled_island(exec_, task, block_jacobi_memory_, outcome);
     exec_.get(best.impulse, impulse.data());
     exec_.get(best.body_velocity, body_velocity.data());

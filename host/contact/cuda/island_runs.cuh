@@ -108,7 +108,6 @@ class IslandRuns {
   DeviceVector<double>& impulse() { return float64_.state.impulse; }              ///< [3 slots]
   DeviceVector<double>& body_velocity() { return float64_.state.body_velocity; }  ///< [dofs]
   const ContactNumbers<double>& numbers() const { return float64_.numbers; }
-  const ContactNumbers<float>& numbers32() const { return float32_.numbers; }
 
  private:
   static constexpr std::int64_t events_per_grid = 1024;

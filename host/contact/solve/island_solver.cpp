@@ -158,16 +158,8 @@ void IslandSolver::iterate(std::int64_t i, std::int64_t max_iterations, EngineRe
     ContactSystem<double>& system = host_system();
     const ContactIndices indices = structure_.indices();
     const ContactNumbers<double> numbers = system.numbers(indices);
-    ContactSystem<float> rounded;
-    if (options_.precision == ContactPrecision::float32) rounded = make_float32(structure_, system);
-    const CoupledTask task{options_,
-                           island,
-                           indices.color_start,
-                           numbers,
-                           rounded.numbers(indices),
-                           view_of(guess),
-                           max_iterations,
-                           budget_};
+    const CoupledTask task{options_,       island, indices.color_start, numbers, view_of(guess),
+                           max_iterations, budget_};
     const CoupledSolution best = solve_coupled_island(exec, task, *block_jacobi_memory_, outcome);
     exec.get(best.impulse, impulse.data());
     exec.get(best.body_velocity, body_velocity.data());

@@ -86,7 +86,7 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                                       std::vector<Point3>& velocity,
                                       ContactSolveOutcome& outcome) {
   if (shares.soft.is_empty()) return;
-  const TwoLevelOutcome solved =
+  const CoupledOutcome solved =
       deformable_solver.solve(stepper,
                               {state, islands, rows.sides(), rows.rows(), shares.soft.islands,
                                shares.soft.contacts, laws.problem(), change},

@@ -22,18 +22,21 @@ CompliantListMaker::CompliantListMaker(std::vector<std::int32_t> body_of, double
     : body_of_(std::move(body_of)), relaxation_(relaxation) {}
 
 bool CompliantListMaker::is_made(const SystemRows& rows,
-                                 const std::vector<std::uint8_t>& takes) const {
+                                 const std::vector<std::uint8_t>& takes,
+                                 const std::vector<std::uint8_t>& bare) const {
   const View<const std::int32_t>& of = rows.block_of;
-  return takes == takes_ &&
+  return takes == takes_ && bare == bare_ &&
          std::equal(of.data, of.data + of.size, block_of_.begin(), block_of_.end());
 }
 
 /// Rows of an island follow each other, and so do the two rows of a rigid body.
 void CompliantListMaker::make(const SystemRows& rows,
                               const ContactIslands& islands,
-                              const std::vector<std::uint8_t>& takes) {
-  if (is_made(rows, takes)) return;
+                              const std::vector<std::uint8_t>& takes,
+                              const std::vector<std::uint8_t>& bare) {
+  if (is_made(rows, takes, bare)) return;
   takes_ = takes;
+  bare_ = bare;
   block_of_.assign(rows.block_of.data, rows.block_of.data + rows.block_of.size);
   lists_.version = next_version();
   for (auto* list : {&lists_.model_body, &lists_.body_of_row, &lists_.system_row,
@@ -49,7 +52,8 @@ void CompliantListMaker::make(const SystemRows& rows,
   for (std::int32_t row = 0; row < rows.unknown_count; ++row) {
     const std::int32_t block = rows.block_of[row], island = islands.of_block(block);
     if (takes[index_of(island)] == 0) continue;
-    const bool is_elastic = has_inverse(index_of(island));
+    const bool is_bare = !bare.empty() && bare[index_of(island)] != 0;
+    const bool is_elastic = has_inverse(index_of(island)) && !is_bare;
     if (is_elastic ? island != last : rows.pair[row] != 2) {
       CompliantBody& own = lists_.bodies.emplace_back();
       own.system_row = row;

@@ -1,5 +1,5 @@
 /// @file compliant_lists.hpp
-/// The bodies of a solve of contacts on a device, and their rows.
+/// The bodies of a two-level iteration, and their rows.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,6 +18,9 @@ struct CompliantLists {
   std::vector<std::int32_t> diagonal_rows;  ///< first system rows of the bodies by D^-1
   std::vector<std::int32_t> row_of_block;   ///< [block_count], or -1
 
+  const CompliantBody& body_at(std::int64_t row) const {
+    return bodies[static_cast<std::size_t>(body_of_row[static_cast<std::size_t>(row)])];
+  }
   std::int64_t row_count() const { return static_cast<std::int64_t>(body_of_row.size()); }
 };
 

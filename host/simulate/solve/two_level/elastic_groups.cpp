@@ -21,23 +21,23 @@ constexpr std::int64_t piece_size = 160;   // numbers of a body, a multiple of 8
 }  // namespace
 
 void ElasticGroups::set(const ElasticSpace& space,
-                        const std::vector<std::int32_t>& part_start,
-                        const std::vector<std::int32_t>& part_row) {
+                        const std::vector<std::int32_t>& block_start,
+                        const std::vector<std::int32_t>& block_row) {
   space_ = &space;
-  part_start_ = &part_start;
-  part_row_ = &part_row;
+  block_start_ = &block_start;
+  block_row_ = &block_row;
   groups_.clear();
   group_of_bodies_.clear();
-  group_of_.assign(part_start.size() - 1, -1);
-  place_of_part_.assign(part_row.size(), -1);
+  group_of_.assign(block_start.size() - 1, -1);
+  place_of_block_.assign(block_row.size(), -1);
 }
 
 /// A contact has two sides, each on one body at most. @returns these, or -1
 std::array<std::int32_t, 2> ElasticGroups::bodies_of(std::int32_t contact) const {
   std::array<std::int32_t, 2> own{-1, -1};
-  const std::int32_t end = (*part_start_)[index_of(contact) + 1];
-  for (std::int32_t p = (*part_start_)[index_of(contact)]; p < end; ++p) {
-    const std::int32_t body = space_->body_of_row((*part_row_)[index_of(p)]);
+  const std::int32_t end = (*block_start_)[index_of(contact) + 1];
+  for (std::int32_t p = (*block_start_)[index_of(contact)]; p < end; ++p) {
+    const std::int32_t body = space_->body_of_row((*block_row_)[index_of(p)]);
     if (body >= 0 && body != own[0]) own[own[0] < 0 ? 0 : 1] = body;
   }
   if (own[1] >= 0 && own[1] < own[0]) std::swap(own[0], own[1]);
@@ -69,13 +69,13 @@ const std::vector<std::int32_t>& ElasticGroups::group(std::vector<std::int32_t>&
   return changed_;
 }
 
-/// Nodes that contacts of one group touch, and the places of their parts.
+/// Nodes that contacts of one group touch, and the places of their blocks.
 void ElasticGroups::list_slots(Group& group) {
-  const auto for_parts = [&](const auto& visit) {
+  const auto for_blocks = [&](const auto& visit) {
     for (const std::int32_t contact : group.contacts) {
-      const std::int32_t end = (*part_start_)[index_of(contact) + 1];
-      for (std::int32_t p = (*part_start_)[index_of(contact)]; p < end; ++p) {
-        const std::int32_t row = (*part_row_)[index_of(p)];
+      const std::int32_t end = (*block_start_)[index_of(contact) + 1];
+      for (std::int32_t p = (*block_start_)[index_of(contact)]; p < end; ++p) {
+        const std::int32_t row = (*block_row_)[index_of(p)];
         const std::int32_t body = space_->body_of_row(row);
         if (body >= 0) {
           visit(index_of(p), body, space_->slot_of_row(row));
@@ -88,7 +88,7 @@ void ElasticGroups::list_slots(Group& group) {
   const auto body_at = [&](std::int32_t body) {
     return std::ranges::find(group.bodies, body, &Body::body);
   };
-  for_parts([&](std::size_t, std::int32_t body, std::int32_t slot) {
+  for_blocks([&](std::size_t, std::int32_t body, std::int32_t slot) {
     auto own = body_at(body);
     if (own == group.bodies.end()) own = group.bodies.insert(own, Body{body, 0, 0, {}});
     own->slots.push_back(slot);
@@ -106,10 +106,10 @@ void ElasticGroups::list_slots(Group& group) {
     own.size = (3 * static_cast<std::int32_t>(own.slots.size()) + 7) / 8 * 8;
     group.size += own.size;
   }
-  for_parts([&](std::size_t p, std::int32_t body, std::int32_t slot) {
+  for_blocks([&](std::size_t p, std::int32_t body, std::int32_t slot) {
     const Body& own = *body_at(body);
     const auto place = std::lower_bound(own.slots.begin(), own.slots.end(), slot);
-    place_of_part_[p] = own.first + 3 * static_cast<std::int32_t>(place - own.slots.begin());
+    place_of_block_[p] = own.first + 3 * static_cast<std::int32_t>(place - own.slots.begin());
   });
   group.z.resize(index_of(group.size));
   group.push.resize(index_of(group.size));

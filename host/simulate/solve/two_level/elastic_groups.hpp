@@ -18,11 +18,11 @@ namespace tetwarp {
 class ElasticGroups {
  public:
   /// Forgets all groups. The arguments are kept and must outlive the groups.
-  /// @param part_start  [contacts + 1] parts of each contact
-  /// @param part_row    [parts] the row that a part moves
+  /// @param block_start  [contacts + 1] blocks of each contact
+  /// @param block_row    [blocks] the row that each moves
   void set(const ElasticSpace& space,
-           const std::vector<std::int32_t>& part_start,
-           const std::vector<std::int32_t>& part_row);
+           const std::vector<std::int32_t>& block_start,
+           const std::vector<std::int32_t>& block_row);
   /// Sorts a list of contacts into the order of sweeps, one group after the other. Groups with
   /// contacts that were in no list before are made again.
   /// @param threads  any number: same groups
@@ -37,11 +37,11 @@ class ElasticGroups {
 
   /// The group of a contact that has been listed.
   std::int32_t of_contact(std::size_t contact) const { return group_of_[contact]; }
-  /// Place in z and in the pushes of a part, -1: of no elastic body.
-  std::int32_t place_of_part(std::size_t part) const { return place_of_part_[part]; }
-  /// The places of a part and of those that follow it.
-  const std::int32_t* places_of_parts(std::size_t first) const {
-    return place_of_part_.data() + first;
+  /// Place in z and in the pushes of a block, -1: of no elastic body.
+  std::int32_t place_of_block(std::size_t block) const { return place_of_block_[block]; }
+  /// The places of a block and of those that follow it.
+  const std::int32_t* places_of_blocks(std::size_t first) const {
+    return place_of_block_.data() + first;
   }
   /// Numbers of z, a multiple of 8.
   std::int32_t size(std::int32_t group) const {
@@ -58,7 +58,7 @@ class ElasticGroups {
     return groups_[static_cast<std::size_t>(group)].is_pure;
   }
 
-  /// Adds the velocities of a push on one node. @param place  place_of_part()
+  /// Adds the velocities of a push on one node. @param place  place_of_block()
   /// @param push  impulse [N s], three. @param z  in and out [m/s], [size]
   void add_velocities(std::int32_t group, std::int32_t place, const float* push, float* z);
 
@@ -114,12 +114,12 @@ class ElasticGroups {
   void copy_compliance(Body& own) const;
 
   const ElasticSpace* space_ = nullptr;
-  const std::vector<std::int32_t>*part_start_ = nullptr, *part_row_ = nullptr;
+  const std::vector<std::int32_t>*block_start_ = nullptr, *block_row_ = nullptr;
   std::vector<Group> groups_;
   std::vector<std::int32_t> changed_;  ///< by the last group()
   std::map<std::array<std::int32_t, 2>, std::int32_t> group_of_bodies_;
   std::vector<Piece> finished_;  ///< of finish()
-  std::vector<std::int32_t> group_of_, place_of_part_;
+  std::vector<std::int32_t> group_of_, place_of_block_;
 };
 
 }  // namespace tetwarp

@@ -1,5 +1,5 @@
 /// @file elastic_space.cpp
-/// Chooses bodies, and computes columns of their inverses at rest.
+/// Lists touched nodes, and computes columns of their inverses at rest.
 #include "host/simulate/solve/two_level/elastic_space.hpp"
 
 #include <algorithm>
@@ -17,38 +17,42 @@ constexpr std::size_t most_touched = 400;  // nodes of a body
 
 ElasticSpace::ElasticSpace(std::shared_ptr<RestFactors> factors) : factors_(std::move(factors)) {}
 
-void ElasticSpace::choose(const SystemRows& rows,
-                          const ContactIslands& islands,
-                          const std::vector<std::uint8_t>& takes,
-                          const ContactRows& contact_rows,
-                          const std::vector<std::int32_t>& contacts) {
-  body_of_row_.assign(index_of(rows.unknown_count), -1);
-  slot_of_row_.assign(index_of(rows.unknown_count), -1);
-  row_of_block_.assign(index_of(rows.block_of.size), -1);
-  std::size_t count = 0;
-  std::int32_t last = -1;
-  for (std::int32_t row = 0; row < rows.unknown_count; ++row) {
-    const std::int32_t island = islands.of_block(rows.block_of[row]);
-    if (takes[index_of(island)] == 0 || factors_->body_of_island(island) < 0) continue;
-    if (island != last) {
-      if (count == bodies_.size()) bodies_.emplace_back();
-      bodies_[count].body = factors_->body_of_island(island);
-      bodies_[count].row_begin = row;
-      ++count;
-      last = island;
+void ElasticSpace::find_bare(const SoftProblem& problem, std::vector<std::uint8_t>& bare) {
+  std::vector<std::size_t> touched(index_of(problem.islands.count()), 0);
+  std::vector<std::uint8_t> is_counted;
+  for (const std::int32_t contact : problem.contacts) {
+    for (const std::int32_t block : problem.rows.blocks_of(index_of(contact))) {
+      const std::int32_t island = problem.islands.of_block(block);
+      if (index_of(block) >= is_counted.size()) is_counted.resize(index_of(block) + 1, 0);
+      if (island < 0 || is_counted[index_of(block)] != 0) continue;
+      is_counted[index_of(block)] = 1;
+      ++touched[index_of(island)];
     }
-    bodies_[count - 1].row_end = row + 1;
-    body_of_row_[index_of(row)] = static_cast<std::int32_t>(count) - 1;
-    row_of_block_[index_of(rows.block_of[row])] = row;
   }
-  bodies_.resize(count);
+  bare.resize(touched.size());
+  std::ranges::transform(touched, bare.begin(), [](std::size_t count) -> std::uint8_t {
+    return count > most_touched ? 1 : 0;
+  });
+}
+
+void ElasticSpace::set_bodies(const CompliantLists& lists,
+                              const ContactRows& contact_rows,
+                              const std::vector<std::int32_t>& contacts) {
+  lists_ = &lists;
+  slot_of_row_.assign(index_of(lists.row_count()), -1);
   for (const std::int32_t contact : contacts) {
     for (const std::int32_t block : contact_rows.blocks_of(index_of(contact))) {
-      const std::int32_t row = row_of_block_[index_of(block)];
+      const std::int32_t row = lists.row_of_block[index_of(block)];
       if (row >= 0) slot_of_row_[index_of(row)] = 0;
     }
   }
-  for (ElasticBody& own : bodies_) {
+  bodies_.resize(lists.model_body.size());
+  for (const CompliantBody& body : lists.bodies) {
+    if (body.frame < 0) continue;
+    ElasticBody& own = bodies_[index_of(body.frame)];
+    own.body = lists.model_body[index_of(body.frame)];
+    own.row_begin = body.first;
+    own.row_end = body.first + body.count;
     needed_.clear();
     for (std::int32_t row = own.row_begin; row < own.row_end; ++row) {
       if (slot_of_row_[index_of(row)] == 0) needed_.push_back(row - own.row_begin);
@@ -56,18 +60,6 @@ void ElasticSpace::choose(const SystemRows& rows,
     set_touched(own);
     for (std::size_t k = 0; k < own.touched.size(); ++k) {
       slot_of_row_[index_of(own.row_begin + own.touched[k])] = static_cast<std::int32_t>(k);
-    }
-  }
-  const auto is_left = [&](const ElasticBody& own) {
-    if (own.touched.size() <= most_touched) return false;
-    for (std::int32_t row = own.row_begin; row < own.row_end; ++row)
-      body_of_row_[index_of(row)] = -1;
-    return true;
-  };
-  bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), is_left), bodies_.end());
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    for (std::int32_t row = bodies_[b].row_begin; row < bodies_[b].row_end; ++row) {
-      body_of_row_[index_of(row)] = static_cast<std::int32_t>(b);
     }
   }
 }
@@ -84,22 +76,19 @@ void ElasticSpace::set_touched(ElasticBody& own) const {
   if (own.source.body != own.body || own.touched.size() > most) own.touched = needed_;
 }
 
-void ElasticSpace::set(
-    const ModelState& state, double time_step, std::int64_t first, double damping, int threads) {
+void ElasticSpace::set(const TwoLevelStart& start, double damping, int threads) {
   damping_ = damping;
   size_ = 0;
   for (ElasticBody& own : bodies_) {
-    own.first = first + size_;
+    own.first = 3 * lists_->row_count() + size_;
     own.size = (3 * static_cast<std::int64_t>(own.touched.size()) + 7) / 8 * 8;
     size_ += own.size;
   }
-  if (bodies_.empty()) return;
-  factors_->set_time_step(time_step);
   parallel_tasks(threads, static_cast<std::int64_t>(bodies_.size()), [&](std::int64_t b) {
     ElasticBody& own = bodies_[index_of(b)];
     own.factor = &factors_->of_body(own.body);
-    own.rotation = own.factor->mean_rotation(state.position.front().data());
-    set_compliance(own, time_step);
+    std::copy_n(start.rotation.begin() + 9 * b, 9, own.rotation.begin());
+    set_compliance(own, start.time_step);
   });
 }
 

@@ -6,16 +6,14 @@
 #include <memory>
 #include <vector>
 
-#include "host/simulate/solve/problem/contact_islands.hpp"
-#include "host/simulate/solve/problem/contact_rows.hpp"
+#include "host/simulate/solve/two_level/two_level_start.hpp"
 #include "host/simulate/step/cpu/rest_factors.hpp"
-#include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp {
 
-/// A body whose coupling island is taken, with the nodes that contacts touch.
+/// A body that is solved by its factor at rest, with the nodes that contacts touch.
 struct ElasticBody {
-  std::int32_t body = -1, row_begin = 0, row_end = 0;
+  std::int32_t body = -1, row_begin = 0, row_end = 0;  ///< of the model; rows of the lists
   RestFactor* factor = nullptr;
   std::array<double, 9> rotation{};   ///< R, of the mean of the body; rows first
   std::vector<std::int32_t> touched;  ///< nodes, from row_begin, ascending; of the last steps
@@ -32,29 +30,27 @@ struct ElasticBody {
   Source source;
 };
 
-/// Which bodies are solved by their factors at rest, M^-1 = R A_0^-1 R^T, and their compliance at
-/// the nodes that contacts touch. Bodies coupled to others, cloth, those with very many nodes and
-/// those with very many touched nodes are not.
+/// Bodies that are solved by their factors at rest, M^-1 = R A_0^-1 R^T, and their compliance at
+/// the nodes that contacts touch.
 class ElasticSpace {
  public:
   explicit ElasticSpace(std::shared_ptr<RestFactors> factors);
 
-  /// Chooses among the coupling islands that are taken.
-  void choose(const SystemRows& rows,
-              const ContactIslands& islands,
-              const std::vector<std::uint8_t>& takes,
-              const ContactRows& contact_rows,
-              const std::vector<std::int32_t>& contacts);
-  /// @param first    place of the first number of touched nodes in y
+  /// Finds bodies with so many touched nodes that they give way by their diagonal blocks instead.
+  /// @param bare  out, [coupling islands]; 1: such a body
+  static void find_bare(const SoftProblem& problem, std::vector<std::uint8_t>& bare);
+
+  /// Sets the bodies that have a frame, and which of their nodes contacts touch.
+  /// @param lists  kept by the caller
+  void set_bodies(const CompliantLists& lists,
+                  const ContactRows& contact_rows,
+                  const std::vector<std::int32_t>& contacts);
   /// @param damping  a power of two: M^-1 becomes damping R A_0^-1 R^T
-  void set(
-      const ModelState& state, double time_step, std::int64_t first, double damping, int threads);
+  void set(const TwoLevelStart& start, double damping, int threads);
 
   const std::vector<ElasticBody>& bodies() const { return bodies_; }
   /// Place in bodies() of the body of a row, or -1.
-  std::int32_t body_of_row(std::int64_t row) const {
-    return body_of_row_[static_cast<std::size_t>(row)];
-  }
+  std::int32_t body_of_row(std::int64_t row) const { return lists_->body_at(row).frame; }
   /// Place of a row in ElasticBody::touched, or -1.
   std::int32_t slot_of_row(std::int64_t row) const {
     return slot_of_row_[static_cast<std::size_t>(row)];
@@ -71,8 +67,9 @@ class ElasticSpace {
   void set_compliance(ElasticBody& own, double time_step) const;
 
   std::shared_ptr<RestFactors> factors_;
-  std::vector<ElasticBody> bodies_;
-  std::vector<std::int32_t> body_of_row_, slot_of_row_, row_of_block_;
+  const CompliantLists* lists_ = nullptr;
+  std::vector<ElasticBody> bodies_;  ///< [frames]
+  std::vector<std::int32_t> slot_of_row_;
   std::vector<std::int32_t> needed_;  ///< nodes of a body that contacts touch
   std::int64_t size_ = 0;
   double damping_ = 1;

@@ -14,7 +14,7 @@
 namespace tetwarp {
 namespace {
 
-/// u += J v of one part. @param j  three rows of three
+/// u += J v of one block. @param j  three rows of three
 void add_velocity(const double* j, const double* v, double* u) {
   for (int a = 0; a < 3; ++a) u[a] += j[3 * a] * v[0] + j[3 * a + 1] * v[1] + j[3 * a + 2] * v[2];
 }
@@ -36,7 +36,7 @@ void GroupMatrices::set_entries(Matrix& matrix, std::size_t k, std::size_t m, co
 
 void GroupMatrices::make(std::int32_t group) {
   const std::vector<std::int32_t>& contacts = groups_.contacts(group);
-  const std::vector<std::int32_t>& start = blocks_.part_start();
+  const std::vector<std::int32_t>& start = blocks_.block_start();
   Matrix& own = matrices_[index_of(group)];
   const std::size_t size = index_of(groups_.size(group));
   own.stride = (3 * static_cast<std::int64_t>(contacts.size()) + 7) / 8 * 8;
@@ -59,8 +59,8 @@ void GroupMatrices::make(std::int32_t group) {
     for (std::size_t m = k; m < contacts.size(); ++m) {
       const std::size_t other = index_of(contacts[m]);
       float block[3][8] = {};
-      vector_stages().add_blocks(blocks_.rounded(blocks_.part(start[other])),
-                                 groups_.places_of_parts(index_of(start[other])),
+      vector_stages().add_blocks(blocks_.rounded(index_of(start[other])),
+                                 groups_.places_of_blocks(index_of(start[other])),
                                  start[other + 1] - start[other], own.columns.data(), block[0]);
       for (std::size_t s = 0; s < std::min(columns, m - k + 1); ++s) {
         set_entries(own, k + s, m, block[0] + 4 * s);
@@ -94,9 +94,9 @@ void GroupMatrices::set_velocities(const GroupRange& range,
     const std::size_t c = index_of(list[k]);
     double* const u = own.velocity.data() + place_[c];
     std::copy_n(blocks_.offset(c), 3, u);
-    for (std::int32_t p = blocks_.part_start()[c]; p < blocks_.part_start()[c + 1]; ++p) {
-      add_velocity(blocks_.turned(blocks_.part(p)), z + groups_.place_of_part(index_of(p)), u);
-    }
+    blocks_.for_blocks(c, [&](std::size_t b) {
+      add_velocity(blocks_.turned(b), z + groups_.place_of_block(b), u);
+    });
   }
 }
 
@@ -110,14 +110,13 @@ void GroupMatrices::add_pushes(const GroupRange& range,
     const double* const r = impulse + 3 * k;
     const double* const before = own.before.data() + 3 * (k - range.begin);
     const double change[3] = {r[0] - before[0], r[1] - before[1], r[2] - before[2]};
-    const std::size_t c = index_of(list[k]);
-    for (std::int32_t p = blocks_.part_start()[c]; p < blocks_.part_start()[c + 1]; ++p) {
-      const double* const j = blocks_.turned(blocks_.part(p));
-      double* const push = pushes + groups_.place_of_part(index_of(p));
+    blocks_.for_blocks(index_of(list[k]), [&](std::size_t b) {
+      const double* const j = blocks_.turned(b);
+      double* const push = pushes + groups_.place_of_block(b);
       for (int i = 0; i < 3; ++i) {
         push[i] += j[i] * change[0] + j[3 + i] * change[1] + j[6 + i] * change[2];
       }
-    }
+    });
   }
 }
 

@@ -11,12 +11,10 @@
 namespace tetwarp {
 namespace {
 
-/// std::copy_n() is a function call, which takes longer than copying a few numbers.
-void copy_threes(const double* from, std::int32_t size, double* to) {
-  for (std::int32_t k = 0; k < size; k += 3) {
-    const double a = from[k], b = from[k + 1], c = from[k + 2];
-    to[k] = a, to[k + 1] = b, to[k + 2] = c;
-  }
+/// std::copy_n() is a function call, which takes longer than copying three numbers.
+void copy_three(const double* from, double* to) {
+  const double a = from[0], b = from[1], c = from[2];
+  to[0] = a, to[1] = b, to[2] = c;
 }
 
 /// sum[a] += J_a . v, in four partial sums each, which compilers vectorize.
@@ -47,28 +45,24 @@ void PackedContacts::clear() {
 /// Copies J and responses of a contact to three rows each, filled up with zeros to a multiple of
 /// four numbers.
 void PackedContacts::pack(std::size_t contact) {
-  std::int32_t size = 0;
-  for (std::int32_t p = blocks_.part_start()[contact]; p < blocks_.part_start()[contact + 1]; ++p) {
-    size += blocks_.part(p).size;
-  }
-  size = (size + 3) / 4 * 4;
+  const std::vector<std::int32_t>& start = blocks_.block_start();
+  const std::int32_t size = (3 * (start[contact + 1] - start[contact]) + 3) / 4 * 4;
   size_[contact] = size;
   start_[contact] = static_cast<std::int64_t>(packed_.size());
   packed_.resize(packed_.size() + 6 * index_of(size), 0.0);
   if (gathered_.size() < index_of(size)) gathered_.resize(index_of(size));
   double* out = packed_.data() + start_[contact];
   moves_rows_[contact] = 0;
-  for (std::int32_t p = blocks_.part_start()[contact]; p < blocks_.part_start()[contact + 1]; ++p) {
-    const TouchingBlocks::Part& part = blocks_.part(p);
-    if (!part.is_elastic()) moves_rows_[contact] = 1;
-    const double* const j = part.is_elastic() ? blocks_.turned(part) : blocks_.jacobian(part);
+  blocks_.for_blocks(contact, [&](std::size_t b) {
+    const bool is_elastic = blocks_.is_elastic(b);
+    if (!is_elastic) moves_rows_[contact] = 1;
+    const double* const j = is_elastic ? blocks_.turned(b) : blocks_.jacobian(b);
     for (std::int32_t a = 0; a < 3; ++a) {
-      std::copy_n(j + a * part.size, part.size, out + a * size);
-      if (part.is_elastic()) continue;
-      std::copy_n(blocks_.response(part) + a * part.size, part.size, out + (3 + a) * size);
+      copy_three(j + 3 * a, out + a * size);
+      if (!is_elastic) copy_three(blocks_.response(b) + 3 * a, out + (3 + a) * size);
     }
-    out += part.size;
-  }
+    out += 3;
+  });
 }
 
 /// Keeps how the nodes of the group give way to the contact.
@@ -84,40 +78,35 @@ void PackedContacts::pack_elastic(std::size_t contact) {
 void PackedContacts::gather(std::size_t contact, const double* y) {
   double* out = gathered_.data();
   const double* const z = groups_.velocities(groups_.of_contact(contact));
-  for (std::int32_t p = blocks_.part_start()[contact]; p < blocks_.part_start()[contact + 1]; ++p) {
-    const TouchingBlocks::Part& part = blocks_.part(p);
-    const std::int32_t place = groups_.place_of_part(index_of(p));
-    copy_threes(place < 0 ? y + part.place : z + place, part.size, out);
-    out += part.size;
-  }
+  blocks_.for_blocks(contact, [&](std::size_t b) {
+    const std::int32_t place = groups_.place_of_block(b);
+    copy_three(place < 0 ? y + blocks_.place(b) : z + place, out);
+    out += 3;
+  });
   std::fill(out, gathered_.data() + size_[contact], 0.0);
 }
 
 /// Copies the gathered velocities of rows back.
 void PackedContacts::scatter(std::size_t contact, double* y) const {
   const double* in = gathered_.data();
-  for (std::int32_t p = blocks_.part_start()[contact]; p < blocks_.part_start()[contact + 1]; ++p) {
-    const TouchingBlocks::Part& part = blocks_.part(p);
-    if (!part.is_elastic()) copy_threes(in, part.size, y + part.place);
-    in += part.size;
-  }
+  blocks_.for_blocks(contact, [&](std::size_t b) {
+    if (!blocks_.is_elastic(b)) copy_three(in, y + blocks_.place(b));
+    in += 3;
+  });
 }
 
 /// Adds J^T change to the pushes of the group.
 void PackedContacts::add_push_of_elastic(std::size_t contact, const double* change) {
-  const std::int32_t size = size_[contact];
-  const double* j = packed_.data() + start_[contact];
   double* const pushes = groups_.pushes(groups_.of_contact(contact));
-  for (std::int32_t p = blocks_.part_start()[contact]; p < blocks_.part_start()[contact + 1]; ++p) {
-    const std::int32_t place = groups_.place_of_part(index_of(p));
-    if (place >= 0) {
-      double* const push = pushes + place;
-      for (std::int32_t k = 0; k < 3; ++k) {
-        push[k] += j[k] * change[0] + j[size + k] * change[1] + j[2 * size + k] * change[2];
-      }
+  blocks_.for_blocks(contact, [&](std::size_t b) {
+    const std::int32_t place = groups_.place_of_block(b);
+    if (place < 0) return;
+    const double* const j = blocks_.turned(b);
+    double* const push = pushes + place;
+    for (int k = 0; k < 3; ++k) {
+      push[k] += j[k] * change[0] + j[3 + k] * change[1] + j[6 + k] * change[2];
     }
-    j += blocks_.part(p).size;
-  }
+  });
 }
 
 /// One update of a contact. @pre ElasticGroups::begin() of its group

@@ -9,8 +9,8 @@
 #include "host/simulate/solve/problem/contact_constants.hpp"
 #include "host/simulate/solve/problem/contact_rows.hpp"
 #include "host/simulate/solve/two_level/elastic_space.hpp"
-#include "host/simulate/solve/two_level/taken_islands.hpp"
 #include "kernels/body/row_product.hpp"
+#include "kernels/contact/touching_rows.hpp"
 
 namespace tetwarp {
 
@@ -20,38 +20,26 @@ struct TouchingSums {
   double work = 0;     ///< r . (u - free)
 };
 
-/// Vectors x and forces hold three numbers of each row of the system. Vectors y hold the same, and
+/// Vectors x and forces hold three numbers of each row of the lists. Vectors y hold the same, and
 /// after these the velocities of the nodes of elastic bodies that contacts touch, in the frames of
 /// their bodies at rest (ElasticBody::first).
 ///
-/// The velocity of a contact is u = J y + w, a sum over its parts. Impulses r of a contact change y
-/// by M^-1 J^T r: rows by omega D^-1 J^T r, the touched nodes of an elastic body by A_0^-1 (J R)^T
-/// r, where R turns from the body at rest to the world.
+/// The velocity of a contact is u = J y + w, a sum over its blocks. Impulses r of a contact change
+/// y by M^-1 J^T r: rows by omega D^-1 J^T r, the touched nodes of an elastic body by A_0^-1 (J
+/// R)^T r, where R turns from the body at rest to the world.
 class TouchingBlocks {
  public:
-  /// The rows of a node or of a rigid body on which a contact acts.
-  struct Part {
-    std::int64_t first = 0;  ///< its first number in x and in forces
-    std::int64_t place = 0;  ///< its first number in y
-    std::int64_t value =
-        0;  ///< its first number in the arrays of jacobian(), turned() ..., [3][size]
-    std::int32_t size = 0;  ///< its numbers: 3, of a rigid body 6
-    bool is_elastic() const { return place != first; }
-  };
-
   explicit TouchingBlocks(int threads) : threads_(threads) {}
 
-  /// @param laws        friction, offsets, adhesion of the contacts, and their guess
-  /// @param contacts    numbers of the contacts in `rows`
-  /// @param relaxation  omega of rows that A couples to others; of single rigid bodies it is 1
-  void set(const StepSystem& system,
-           const TakenIslands& islands,
+  /// @param lists     kept by the caller
+  /// @param contacts  numbers of the contacts in `rows`
+  /// @param start     their laws and offsets
+  void set(const CompliantLists& lists,
            const ElasticSpace& elastic,
            const ContactRows& rows,
            const std::vector<std::int32_t>& contacts,
-           const ContactProblem& laws,
-           const DiagonalInverse<double>& inverse,
-           double relaxation);
+           const TwoLevelStart& start,
+           const DiagonalInverse<double>& inverse);
 
   std::int64_t count() const { return static_cast<std::int64_t>(laws_.constants.size()); }
   const ContactConstants<double>& law(std::size_t contact) const {
@@ -61,21 +49,30 @@ class TouchingBlocks {
   const double* offset(std::size_t contact) const { return offset_.data() + 3 * contact; }
   /// Diagonal of the blocks J M^-1 J^T of the contacts, [3 contacts].
   const std::vector<double>& diagonal() const { return diagonal_; }
-  /// ContactConstantsList::preload.
-  const std::vector<double>& preload() const { return laws_.preload; }
 
-  /// [contacts + 1] the parts of each contact.
-  const std::vector<std::int32_t>& part_start() const { return part_start_; }
-  /// [parts] the first row of each.
-  const std::vector<std::int32_t>& part_row() const { return part_row_; }
-  const Part& part(std::int32_t p) const { return parts_[static_cast<std::size_t>(p)]; }
-  /// J of a part, [3][size].
-  const double* jacobian(const Part& part) const { return jacobian_.data() + part.value; }
-  /// M^-1 J^T of a part of rows, [3][size].
-  const double* response(const Part& part) const { return response_.data() + part.value; }
-  /// J R of a part of an elastic body, [3][3], and the same rounded to float32.
-  const double* turned(const Part& part) const { return turned_.data() + part.value; }
-  const float* rounded(const Part& part) const { return rounded_.data() + part.value; }
+  /// The blocks of each contact, one for each of the rows on which it acts.
+  TouchingRows rows() const;
+  /// Calls visit(b) for the blocks of a contact.
+  template <class Visit>
+  void for_blocks(std::size_t contact, const Visit& visit) const {
+    for (std::int32_t b = block_start_[contact]; b < block_start_[contact + 1]; ++b) {
+      visit(static_cast<std::size_t>(b));
+    }
+  }
+  const std::vector<std::int32_t>& block_start() const { return block_start_; }  ///< [contacts + 1]
+  const std::vector<std::int32_t>& row() const { return row_; }                  ///< [blocks]
+  /// Its first number in y.
+  std::int64_t place(std::size_t block) const { return place_[block]; }
+  bool is_elastic(std::size_t block) const { return place_[block] != first(block); }
+  /// Its first number in x and in forces.
+  std::int64_t first(std::size_t block) const { return 3 * std::int64_t{row_[block]}; }
+  /// J, row by row: velocities along the axes of the contact per velocity of the row.
+  const double* jacobian(std::size_t block) const { return jacobian_.data() + 9 * block; }
+  /// M^-1 J^T of a row of no elastic body, the three numbers for each axis of the contact.
+  const double* response(std::size_t block) const { return response_.data() + 9 * block; }
+  /// J R of a row of an elastic body, and the same rounded to float32.
+  const double* turned(std::size_t block) const { return turned_.data() + 9 * block; }
+  const float* rounded(std::size_t block) const { return rounded_.data() + 9 * block; }
 
   /// y += M^-1 J^T (after - before), [3 list] each. @pre no elastic bodies
   void push(const std::vector<std::int32_t>& list,
@@ -84,7 +81,7 @@ class TouchingBlocks {
             double* y) const;
   /// u = J x + w of all contacts. @param velocity  out [3 contacts]
   void velocities_of_rows(const double* x, double* velocity) const;
-  /// force = load + J^T r in the rows that contacts touch.
+  /// force = load + J^T r in the rows that contacts touch. @param load  of the system
   void add_impulses(View<const double> load, const double* impulse, double* force) const;
   /// force += J^T r.
   void add_pushes(const double* impulse, double* force) const;
@@ -102,32 +99,26 @@ class TouchingBlocks {
  private:
   /// Threads of loops over contacts: with few contacts starting threads takes longer than the loop.
   int threads() const { return count() < 256 ? 1 : threads_; }
-  void set_parts(const StepSystem& system,
-                 const TakenIslands& islands,
-                 const ElasticSpace& elastic,
-                 const ContactRows& rows,
-                 const std::vector<std::int32_t>& contacts);
-  void set_jacobian(const ContactRows& rows, std::size_t contact);
-  void set_responses(const ContactRows& rows,
-                     const TakenIslands& islands,
-                     const ElasticSpace& elastic,
+  void list_blocks(const ElasticSpace& elastic,
+                   const ContactRows& rows,
+                   const std::vector<std::int32_t>& contacts);
+  void set_response(const DiagonalInverse<double>& inverse, std::size_t contact, std::size_t block);
+  void add_elastic_block(const ElasticSpace& elastic, std::size_t contact, std::size_t block);
+  void set_own_block(const ElasticSpace& elastic,
                      const DiagonalInverse<double>& inverse,
-                     double relaxation);
-  void add_elastic_block(const ElasticSpace& elastic, std::size_t contact, std::int32_t part);
+                     std::size_t contact);
   void add_push(std::size_t contact, const double* r, double* force) const;
-  void velocity_at(std::size_t contact, const double* x, double* velocity) const;
 
   int threads_;
+  const CompliantLists* lists_ = nullptr;
   ContactConstantsList laws_;
   std::vector<double> offset_, diagonal_;
-  std::vector<std::int32_t> part_start_;
-  std::vector<Part> parts_;
-  std::vector<std::int32_t> part_row_, part_entry_;  ///< [parts] row; entry of ContactRows
+  std::vector<std::int32_t> block_start_, row_;
+  std::vector<std::int64_t> place_;
   std::vector<double> jacobian_, response_, turned_;
   std::vector<float> rounded_;
-  std::vector<std::int32_t> touched_;       ///< rows, ascending
-  std::vector<std::uint8_t> is_touched_;    ///< [unknown rows]
-  std::vector<std::int32_t> row_of_block_;  ///< [blocks of the system] row, -1: not solved
+  std::vector<std::int32_t> touched_;     ///< rows, ascending
+  std::vector<std::uint8_t> is_touched_;  ///< [rows]
 };
 
 }  // namespace tetwarp

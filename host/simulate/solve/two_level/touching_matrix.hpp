@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/simulate/solve/two_level/taken_islands.hpp"
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
 #include "host/simulate/step/cpu/block_lu.hpp"
 #include "host/simulate/step/stepper.hpp"
@@ -14,30 +13,28 @@ namespace tetwarp {
 class TouchingMatrix {
  public:
   /// Sets the pattern: that of A, and the rows that a contact moves with each other.
-  /// @param blocks  kept by the caller
+  /// @param lists, blocks  kept by the caller
   /// @returns whether a factorization takes about as long as tens of sweeps and products; if not,
   ///          there is no matrix
-  bool set(const StepSystem& system, const TakenIslands& islands, const TouchingBlocks& blocks);
+  bool set(const StepSystem& system, const CompliantLists& lists, const TouchingBlocks& blocks);
   /// Factorizes. @param slope  H, [contacts][9], row by row
   /// @returns whether the matrix is regular
   bool factor(const StepSystem& system, const std::vector<double>& slope);
-  /// Replaces the right-hand side by the solution. @param x  [rows][3]; other rows become 0
-  void solve(std::vector<double>& x);
+  /// Replaces the right-hand side by the solution. @param x  [rows][3]
+  void solve(std::vector<double>& x) { lu_.solve(x); }
 
  private:
-  bool list_system(const StepSystem& system, const TakenIslands& islands);
+  void list_system(const StepSystem& system);
   void list_contacts();
   void add_system(const StepSystem& system);
   void add_contact(std::size_t contact, const double* slope);
 
+  const CompliantLists* lists_ = nullptr;
   const TouchingBlocks* blocks_ = nullptr;
   BlockLu of_system_;  ///< of A alone, whose pattern stays as contacts come and go
   BlockLu lu_;
-  std::vector<std::int32_t> rows_;          ///< of the islands, ascending
-  std::vector<std::int32_t> index_of_row_;  ///< [rows with unknowns] place in rows_, or -1
   std::vector<BlockLu::Entry> entries_;
   std::vector<std::int32_t> moved_;  ///< by one contact
-  std::vector<double> packed_;       ///< [3 rows_]
 };
 
 }  // namespace tetwarp

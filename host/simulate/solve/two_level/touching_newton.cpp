@@ -16,13 +16,13 @@ constexpr double first_softness = 1e-2, least_softness = 1e-8, most_softness = 1
 
 }  // namespace
 
-bool TouchingNewton::set(const StepSystem& system, const TakenIslands& islands) {
+bool TouchingNewton::set(const StepSystem& system, const CompliantLists& lists) {
   for (std::size_t c = 0; c < index_of(blocks_.count()); ++c) {
     if (blocks_.law(c).friction > 0) return false;
   }
   softness_ = first_softness;
   errors_.clear();
-  return matrix_.set(system, islands, blocks_);
+  return matrix_.set(system, lists, blocks_);
 }
 
 void TouchingNewton::linearize(const std::vector<double>& impulse,
@@ -62,7 +62,7 @@ void TouchingNewton::find_direction(const std::vector<double>& defect,
 }
 
 /// The largest part of the direction that makes the error smaller, or 0.
-double TouchingNewton::accepted_part(const TwoLevelError& error,
+double TouchingNewton::accepted_part(const CoupledError& error,
                                      const std::vector<double>& impulse,
                                      const std::vector<double>& velocity) {
   const double largest = *std::ranges::max_element(errors_);
@@ -75,7 +75,7 @@ double TouchingNewton::accepted_part(const TwoLevelError& error,
     }
     const TouchingSums sums = blocks_.measure(switches_, trial_impulse_.data(),
                                               trial_velocity_.data(), velocity.data(), working_);
-    const double laws = TwoLevelError::of(0, sums.natural, 0).laws;
+    const double laws = CoupledError::of(0, sums.natural, 0).laws;
     const double total = std::hypot((1 - part) * error.equations, laws);
     if (total <= (1 - 0.1 * part) * largest) return part;
   }
@@ -84,7 +84,7 @@ double TouchingNewton::accepted_part(const TwoLevelError& error,
 
 bool TouchingNewton::step(const StepSystem& system,
                           const std::vector<double>& defect,
-                          const TwoLevelError& error,
+                          const CoupledError& error,
                           std::vector<double>& x,
                           std::vector<double>& impulse,
                           std::vector<double>& velocity) {

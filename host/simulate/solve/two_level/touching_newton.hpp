@@ -6,7 +6,7 @@
 
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
 #include "host/simulate/solve/two_level/touching_matrix.hpp"
-#include "host/simulate/solve/two_level/two_level_control.hpp"
+#include "kernels/contact/coupled_control.hpp"
 
 namespace tetwarp {
 
@@ -24,7 +24,7 @@ class TouchingNewton {
 
   /// Call after TouchingBlocks::set().
   /// @returns whether there is no friction and TouchingMatrix::set() finds factors quick
-  bool set(const StepSystem& system, const TakenIslands& islands);
+  bool set(const StepSystem& system, const CompliantLists& lists);
 
   /// A step. @param defect   b + J^T r - A v, [rows][3]
   /// @param error     of x and impulse
@@ -34,7 +34,7 @@ class TouchingNewton {
   /// @returns whether there was a step
   bool step(const StepSystem& system,
             const std::vector<double>& defect,
-            const TwoLevelError& error,
+            const CoupledError& error,
             std::vector<double>& x,
             std::vector<double>& impulse,
             std::vector<double>& velocity);
@@ -46,7 +46,7 @@ class TouchingNewton {
   void find_direction(const std::vector<double>& defect,
                       const std::vector<double>& x,
                       const std::vector<double>& velocity);
-  double accepted_part(const TwoLevelError& error,
+  double accepted_part(const CoupledError& error,
                        const std::vector<double>& impulse,
                        const std::vector<double>& velocity);
 

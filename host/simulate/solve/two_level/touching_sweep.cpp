@@ -23,7 +23,7 @@ constexpr std::int64_t parallel_from = 2'000;
 }  // namespace
 
 void TouchingSweep::set(const ElasticSpace& elastic) {
-  groups_.set(elastic, blocks_.part_start(), blocks_.part_row());
+  groups_.set(elastic, blocks_.block_start(), blocks_.row());
   packed_.clear();
   operations_ = 0;
 }
@@ -81,12 +81,10 @@ void TouchingSweep::list_moved(const std::vector<std::int32_t>& list,
                                std::vector<std::int64_t>& places) {
   moved_.clear();
   for (const std::int32_t contact : list) {
-    const std::size_t c = index_of(contact);
-    for (std::int32_t p = blocks_.part_start()[c]; p < blocks_.part_start()[c + 1]; ++p) {
-      const TouchingBlocks::Part& part = blocks_.part(p);
-      if (!part.is_elastic()) moved_.push_back({part.place, part.size});
-    }
-    groups_.list_ranges(groups_.of_contact(c), moved_);
+    blocks_.for_blocks(index_of(contact), [this](std::size_t b) {
+      if (!blocks_.is_elastic(b)) moved_.push_back({blocks_.place(b), 3});
+    });
+    groups_.list_ranges(groups_.of_contact(index_of(contact)), moved_);
   }
   std::sort(moved_.begin(), moved_.end());
   moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());

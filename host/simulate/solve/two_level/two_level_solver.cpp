@@ -9,8 +9,6 @@
 
 #include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
-#include "host/exec/exec_cpu.hpp"
-#include "kernels/contact/anderson.hpp"
 
 namespace tetwarp {
 namespace {
@@ -25,6 +23,15 @@ constexpr double newton_share = 0.01;
 // Up to these sizes the contact solver is quick where the iteration fails.
 constexpr std::int64_t small_contacts = 256, small_rows = 128;
 
+/// [coupling islands] elastic body that gives way by its factor, or -1.
+std::vector<std::int32_t> bodies_of_islands(const Model& model, const RestFactors& factors) {
+  std::vector<std::int32_t> body_of;
+  for (std::int32_t i = 0; i < model.island_count; ++i) {
+    body_of.push_back(factors.body_of_island(i));
+  }
+  return body_of;
+}
+
 }  // namespace
 
 TwoLevelSolver::TwoLevelSolver(const Model& model,
@@ -33,188 +40,154 @@ TwoLevelSolver::TwoLevelSolver(const Model& model,
     : options_(options),
       switches_{options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive},
       threads_(thread_count(options.threads)),
-      relaxation_(TwoLevelControl::relaxation(options)),
+      exec_(threads_, StageClocks::off),
       factors_(std::move(factors)),
+      maker_(bodies_of_islands(model, *factors_), CoupledControl::omega(options.expert.relaxation)),
       elastic_(factors_),
       blocks_(threads_),
-      step_(model, relaxation_, threads_),
+      step_(model, threads_),
       sweeps_(blocks_, switches_, threads_),
       newton_(blocks_, switches_) {}
 
-/// Sets the contacts in the metric M, and starts from the velocities without contact.
-void TwoLevelSolver::prepare(const StepSystem& system,
-                             const SoftProblem& problem,
-                             const std::vector<Point3>& velocity) {
-  const SystemRows& all = system.rows;
-  const std::int64_t numbers = 3 * std::int64_t{all.count};
-  step_.set(system, islands_, elastic_, weights_);
-  for (auto* values : {&x_, &force_}) values->resize(index_of(numbers));
-  for (std::int32_t row = 0; row < all.count; ++row) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      x_[3 * index_of(row) + i] = velocity[index_of(all.block_of[row])][i];
-      force_[3 * index_of(row) + i] = system.load[3 * std::int64_t{row} + static_cast<int>(i)];
-    }
+/// Sets bodies and contacts in the metric M, and starts from the velocities without contact.
+void TwoLevelSolver::prepare(double damping) {
+  elastic_.set(given_, damping, threads_);
+  step_.set(*system_, lists(), elastic_, weights_);
+  x_.clear();
+  force_.clear();
+  for (std::size_t row = 0; row < lists().model_block.size(); ++row) {
+    const Point3& own = (*start_)[index_of(lists().model_block[row])];
+    const double* const load = system_->load.data + 3 * std::int64_t{lists().system_row[row]};
+    x_.insert(x_.end(), own.begin(), own.end());
+    force_.insert(force_.end(), load, load + 3);
   }
-  blocks_.set(system, islands_, elastic_, problem.rows, problem.contacts, problem.laws,
-              step_.inverse(), relaxation_);
+  blocks_.set(lists(), elastic_, problem_->rows, problem_->contacts, given_, step_.inverse());
   sweeps_.set(elastic_);
-  y_.resize(index_of(numbers + elastic_.size()));
-  std::copy(x_.begin(), x_.end(), y_.begin());
-  impulse_ = problem.laws.impulse_guess;
-  for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] += blocks_.preload()[c];
+  y_.resize(x_.size() + index_of(elastic_.size()));
+  impulse_ = given_.impulse;
   contact_velocity_.resize(impulse_.size());
   free_.resize(impulse_.size());
   blocks_.velocities_of_rows(x_.data(), free_.data());
-  least_error_ = TwoLevelError::least(step_.run(system, x_, force_, y_));
-  if (problem.change.size() != velocity.size()) return;
-  step_.for_each_row([&](std::int32_t row) {
-    const Point3& own = problem.change[index_of(all.block_of[row])];
-    for (std::size_t i = 0; i < 3; ++i) x_[3 * index_of(row) + i] += own[i];
-  });
+  least_error_ = CoupledError::least(step_.run(x_, force_, y_));
+  for (std::size_t i = 0; i < given_.change.size(); ++i) x_[i] += given_.change[i];
 }
 
-/// The error of r and v = x.
-TwoLevelError TwoLevelSolver::find_error(double defect) {
-  blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
-  const TouchingSums sums =
-      blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data(), working_);
-  return TwoLevelError::of(defect, sums.natural, sums.work);
+TwoLevelSolver::Next TwoLevelSolver::start(double damping, CoupledOutcome& outcome) {
+  prepare(damping);
+  if (has_elastic() || !newton_.set(*system_, lists())) return Next::proceeds;
+  const Next end = find_by_newton(outcome);
+  return end == Next::fails ? Next::proceeds : end;
 }
 
-void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
-  outcome.residual = best_.residual;
-  x_ = best_.x;
-  impulse_ = best_.impulse;
-  blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
+View<double> TwoLevelSolver::mixed() {
+  const std::int64_t size = Mixer::columns * 3 * lists().row_count();
+  mixed_.resize(index_of(size));
+  return {mixed_.data(), size};
 }
 
-TwoLevelControl TwoLevelSolver::control(bool ends_early, double tolerance) {
+CoupledControl TwoLevelSolver::control(bool ends_early, double tolerance) {
   contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
   const TouchingSums alone =
       blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data(), working_);
   best_.residual = std::numeric_limits<double>::infinity();
-  return TwoLevelControl({.has_elastic = !elastic_.bodies().empty(),
-                          .ends_early = ends_early,
-                          .tolerance = tolerance,
-                          .natural_alone = alone.natural,
-                          .least_error = least_error_});
+  return CoupledControl({.has_elastic = has_elastic(),
+                         .ends_early = ends_early,
+                         .tolerance = tolerance,
+                         .natural_alone = alone.natural,
+                         .least_error = least_error_});
 }
 
-/// Finds the error of the present iterate, and keeps the best one.
-TwoLevelControl::Next TwoLevelSolver::measure(const StepSystem& system,
-                                              TwoLevelControl& control,
-                                              TwoLevelOutcome& outcome) {
-  blocks_.add_impulses(system.load, impulse_.data(), force_.data());
-  error_ = find_error(step_.run(system, x_, force_, y_));
-  const TwoLevelControl::Next next = control.next(error_, outcome.sweeps);
-  outcome.residual = control.residual();
-  if (control.is_best()) {
-    best_.residual = control.residual();
-    best_.x = x_;
-    best_.impulse = impulse_;
-  }
-  return next;
+std::optional<CoupledError> TwoLevelSolver::find_error(const CoupledOutcome&) {
+  blocks_.add_impulses(system_->load, impulse_.data(), force_.data());
+  const double defect = step_.run(x_, force_, y_);
+  blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
+  const TouchingSums sums =
+      blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data(), working_);
+  return CoupledError::of(defect, sums.natural, sums.work);
+}
+
+void TwoLevelSolver::keep(double residual) {
+  best_.residual = residual;
+  best_.x = x_;
+  best_.impulse = impulse_;
+}
+
+void TwoLevelSolver::take_best() {
+  if (!std::isfinite(best_.residual)) return;
+  x_ = best_.x;
+  impulse_ = best_.impulse;
+}
+
+/// @param sweeps  so far
+bool TwoLevelSolver::goes_on(std::int64_t sweeps) const {
+  return !options_.progress || options_.progress({clock_.seconds(), sweeps, 0});
+}
+
+TwoLevelSolver::Next TwoLevelSolver::limit(const CoupledOutcome& outcome) const {
+  if (sweeps_.operations() > most_operations) return Next::fails;
+  return goes_on(outcome.sweeps) ? Next::proceeds : Next::is_stopped;
+}
+
+void TwoLevelSolver::solve_contacts(double enough, CoupledOutcome& outcome) {
+  stepped_ = impulse_;
+  outcome.sweeps += sweeps_.run(working_, enough, y_, impulse_, [&](std::int64_t sweeps) {
+    return goes_on(outcome.sweeps + sweeps);
+  });
+  step_.add_elastic(blocks_, stepped_.data(), impulse_.data(), y_);
+}
+
+void TwoLevelSolver::take_image() {
+  std::copy_n(y_.begin(), x_.size(), x_.begin());
 }
 
 /// Newton's method from what prepare() has set.
-TwoLevelSolver::End TwoLevelSolver::find_by_newton(const StepSystem& system,
-                                                   TwoLevelOutcome& outcome) {
-  TwoLevelControl control = this->control(false, newton_share * options_.tolerance);
+CoupledControl::Next TwoLevelSolver::find_by_newton(CoupledOutcome& outcome) {
+  CoupledControl control = this->control(false, newton_share * options_.tolerance);
   for (std::int64_t steps = 0; steps <= most_newton; ++steps, ++outcome.outer_iterations) {
-    const TwoLevelControl::Next next = measure(system, control, outcome);
-    if (next == TwoLevelControl::Next::converges) return End::converges;
-    if (next == TwoLevelControl::Next::fails) break;
-    if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
-      return End::is_stopped;
-    }
-    if (!newton_.step(system, step_.defect(), error_, x_, impulse_, contact_velocity_)) break;
+    const CoupledError error = *find_error(outcome);
+    const Next next = control.next(error, outcome.sweeps, [] { return 0; });
+    outcome.residual = control.residual();
+    if (control.is_best()) keep(control.residual());
+    if (next == Next::converges) return next;
+    if (next == Next::fails) break;
+    if (!goes_on(outcome.sweeps)) return Next::is_stopped;
+    if (!newton_.step(*system_, step_.defect(), error, x_, impulse_, contact_velocity_)) break;
   }
-  if (std::isfinite(best_.residual)) {
-    x_ = best_.x;
-    impulse_ = best_.impulse;
-  }
-  return End::fails;
-}
-
-/// Iterates from what prepare() has set.
-/// @param ends_early  where it diverges
-TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
-                                            bool ends_early,
-                                            TwoLevelOutcome& outcome) {
-  const std::int64_t begin = step_.begin(), size = step_.end() - begin;
-  CpuExec exec(threads_, StageClocks::off);
-  using Mixer = AndersonMixer<CpuExec, double>;
-  mixed_.resize(index_of(Mixer::columns * size));
-  Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
-  TwoLevelControl control = this->control(ends_early, options_.tolerance);
-  while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
-    const TwoLevelControl::Next next = measure(system, control, outcome);
-    if (next == TwoLevelControl::Next::fails) return End::fails;
-    if (next == TwoLevelControl::Next::converges) return End::converges;
-    if (next == TwoLevelControl::Next::diverges) return End::diverges;
-    if (sweeps_.operations() > most_operations) return End::fails;
-    stepped_ = impulse_;
-    const auto goes_on = [&](std::int64_t sweeps) {
-      return !options_.progress ||
-             options_.progress({clock_.seconds(), outcome.sweeps + sweeps, 0});
-    };
-    outcome.sweeps += sweeps_.run(working_, control.enough(), y_, impulse_, goes_on);
-    ++outcome.outer_iterations;
-    step_.add_elastic(blocks_, stepped_.data(), impulse_.data(), y_);
-    const View<const double> before{x_.data() + begin, size};
-    const View<double> image{y_.data() + begin, size};
-    if (control.mixes()) {
-      mixer.observe(before, image);
-      mixer.advance(before, image);
-    }
-    std::copy_n(y_.data() + begin, size, x_.data() + begin);
-    if (!goes_on(0)) return End::is_stopped;
-  }
-  return End::fails;
+  take_best();
+  return Next::fails;
 }
 
 /// Whether the contact solver would be quick.
 bool TwoLevelSolver::is_small() const {
-  return blocks_.count() <= small_contacts && step_.end() - step_.begin() <= 3 * small_rows;
+  return blocks_.count() <= small_contacts && lists().row_count() <= small_rows;
 }
 
-TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
-                                      const SoftProblem& problem,
-                                      std::vector<Point3>& velocity) {
+CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
+                                     const SoftProblem& problem,
+                                     std::vector<Point3>& velocity) {
   clock_ = {};
-  elastic_.choose(system.rows, problem.islands, problem.takes, problem.rows, problem.contacts);
-  islands_.set(system.rows, problem.islands, problem.takes, elastic_);
-  TwoLevelOutcome outcome;
-  End end = End::converges;
-  for (double damping = 1; damping >= TwoLevelControl::least_damping; damping /= 2) {
-    elastic_.set(problem.state, problem.laws.adhesion.time_step,
-                 3 * std::int64_t{system.rows.count}, damping, threads_);
-    prepare(system, problem, velocity);
-    const bool can_be_damped =
-        !elastic_.bodies().empty() && damping > TwoLevelControl::least_damping;
-    if (step_.is_empty()) break;
-    if (elastic_.bodies().empty() && newton_.set(system, islands_)) {
-      end = find_by_newton(system, outcome);
-      if (end != End::fails) break;
-    }
-    end = iterate(system, can_be_damped, outcome);
-    if (end != End::diverges) break;
+  system_ = &system;
+  problem_ = &problem;
+  start_ = &velocity;
+  ElasticSpace::find_bare(problem, bare_);
+  maker_.make(system.rows, problem.islands, problem.takes, bare_);
+  if (lists().row_count() == 0) {
+    impulse_ = problem.laws.impulse_guess;
+    contact_velocity_ = problem.laws.velocity_offset;
+    return {.converged = true, .is_result = true};
   }
-  if (step_.is_empty()) {
-    outcome.converged = outcome.is_result = true;
-    return outcome;
-  }
-  outcome.is_stopped = end == End::is_stopped;
-  outcome.converged = end == End::converges;
+  given_.set(problem, lists(), *factors_);
+  elastic_.set_bodies(lists(), problem.rows, problem.contacts);
+  CoupledOutcome outcome = solve_coupled<Mixer>(*this);
   outcome.is_result =
       outcome.converged || ((outcome.is_stopped || !is_small()) && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
-  if (!outcome.converged) take_best(outcome);
-  step_.for_each_row([&](std::int32_t row) {
-    Point3& own = velocity[index_of(system.rows.block_of[row])];
-    for (std::size_t i = 0; i < 3; ++i) own[i] = x_[3 * index_of(row) + i];
-  });
-  for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] -= blocks_.preload()[c];
+  if (!outcome.converged) {
+    outcome.residual = best_.residual;
+    take_best();
+    blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
+  }
+  given_.finish(lists(), x_, impulse_, velocity);
   return outcome;
 }
 

@@ -3,37 +3,35 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
 
 #include "host/base/stopwatch.hpp"
-#include "host/simulate/solve/problem/soft_problem.hpp"
+#include "host/exec/exec_cpu.hpp"
+#include "host/simulate/solve/two_level/compliant_list_maker.hpp"
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
 #include "host/simulate/solve/two_level/touching_newton.hpp"
-#include "host/simulate/solve/two_level/two_level_control.hpp"
 #include "host/simulate/solve/two_level/two_level_step.hpp"
 #include "host/simulate/solve/two_level/two_level_sweeps.hpp"
+#include "kernels/contact/anderson.hpp"
+#include "kernels/contact/coupled_iteration.hpp"
 
 namespace tetwarp {
 
-/// Solves A v = b + J^T r with the laws of contact, from the velocities without contact. With
-/// M^-1 = omega D^-1, D the diagonal blocks of A, or R A_0^-1 R^T for single elastic bodies
-/// (ElasticSpace),
-///
-///     v_f = v + M^-1 (b + J^T r - A v)
-///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
-///     v = v_f + M^-1 J^T (r - r before)
+/// Solves A v = b + J^T r with the laws of contact by the iteration of coupled_iteration.hpp, from
+/// the velocities without contact, with M^-1 = omega D^-1, D the diagonal blocks of A, or
+/// R A_0^-1 R^T for single elastic bodies (ElasticSpace). Sweeps change r (TwoLevelSweeps).
 ///
 /// Without elastic bodies and friction, and where a factorization of A with its contacts has few
 /// multiplications, Newton's method (TouchingNewton) comes first.
 ///
 /// Anderson's method accelerates v; with elastic bodies only from the second iteration on, and only
-/// while the error of the equations is larger than that of the laws. Sweeps accelerate r
-/// (TwoLevelSweeps). The iteration has converged where the errors of equations and laws are
-/// together at most `tolerance` times the sum of the square roots of the work of the impulses and
-/// of the natural map without impulses, or at most the error of the velocities without contact
-/// (TwoLevelControl).
+/// while the error of the equations is larger than that of the laws. The iteration has converged
+/// where the errors of equations and laws are together at most `tolerance` times the sum of the
+/// square roots of the work of the impulses and of the natural map without impulses, or at most the
+/// error of the velocities without contact (CoupledControl).
 ///
 /// It ends without having converged after a number of operations, and where its residual no longer
 /// shrinks, as of bodies that are squeezed so that no velocities satisfy all contacts. The result
@@ -50,44 +48,64 @@ class TwoLevelSolver {
   TwoLevelSolver& operator=(const TwoLevelSolver&) = delete;
 
   /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
-  TwoLevelOutcome solve(const StepSystem& system,
-                        const SoftProblem& problem,
-                        std::vector<Point3>& velocity);
+  CoupledOutcome solve(const StepSystem& system,
+                       const SoftProblem& problem,
+                       std::vector<Point3>& velocity);
 
   /// r and u of the contacts of the last solve(), [3 contacts].
   const std::vector<double>& impulse() const { return impulse_; }
   const std::vector<double>& contact_velocity() const { return contact_velocity_; }
 
-  const std::shared_ptr<RestFactors>& factors() const { return factors_; }
+  // What solve_coupled() calls, which says what they do.
+  using Next = CoupledControl::Next;
+  CpuExec& exec() { return exec_; }
+  View<double> now() { return part_of(x_); }
+  View<double> image() { return part_of(y_); }
+  View<const double> weights() { return part_of(weights_); }
+  View<double> mixed();
+  bool has_elastic() const { return !elastic_.bodies().empty(); }
+  Next start(double damping, CoupledOutcome& outcome);
+  CoupledControl control(bool ends_early) { return control(ends_early, options_.tolerance); }
+  std::optional<CoupledError> find_error(const CoupledOutcome& outcome);
+  void keep(double residual);
+  static double excess(const CoupledOutcome&) { return 0; }
+  Next limit(const CoupledOutcome& outcome) const;
+  void solve_contacts(double enough, CoupledOutcome& outcome);
+  void take_image();
 
  private:
-  enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
+  using Mixer = AndersonMixer<CpuExec, double>;
   /// The iterate with the least residual.
   struct Best {
     double residual = 0;
     std::vector<double> x, impulse;
   };
 
-  void prepare(const StepSystem& system,
-               const SoftProblem& problem,
-               const std::vector<Point3>& velocity);
-  TwoLevelError find_error(double defect);
-  TwoLevelControl control(bool ends_early, double tolerance);
-  TwoLevelControl::Next measure(const StepSystem& system,
-                                TwoLevelControl& control,
-                                TwoLevelOutcome& outcome);
-  End iterate(const StepSystem& system, bool ends_early, TwoLevelOutcome& outcome);
-  End find_by_newton(const StepSystem& system, TwoLevelOutcome& outcome);
-  void take_best(TwoLevelOutcome& outcome);
+  const CompliantLists& lists() const { return maker_.lists(); }
+  /// The numbers of rows.
+  View<double> part_of(std::vector<double>& values) const {
+    return {values.data(), 3 * lists().row_count()};
+  }
+  void prepare(double damping);
+  CoupledControl control(bool ends_early, double tolerance);
+  Next find_by_newton(CoupledOutcome& outcome);
+  bool goes_on(std::int64_t sweeps) const;
+  void take_best();
   bool is_small() const;
 
   ContactOptions options_;
   ContactSwitches switches_;
   int threads_;
-  double relaxation_;  ///< omega
-  Stopwatch clock_;    ///< since the start of the solve
+  CpuExec exec_;
+  Stopwatch clock_;  ///< since the start of the solve
+  // Of the present solve.
+  const StepSystem* system_ = nullptr;
+  const SoftProblem* problem_ = nullptr;
+  const std::vector<Point3>* start_ = nullptr;  ///< velocities without contact
   std::shared_ptr<RestFactors> factors_;
-  TakenIslands islands_;
+  CompliantListMaker maker_;
+  TwoLevelStart given_;
+  std::vector<std::uint8_t> bare_;  ///< [coupling islands] see ElasticSpace::find_bare()
   ElasticSpace elastic_;
   TouchingBlocks blocks_;
   TwoLevelStep step_;
@@ -100,7 +118,6 @@ class TwoLevelSolver {
   std::vector<double> stepped_;          ///< [3 contacts] impulses of the last step
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
   double least_error_ = 0;                                 ///< of the velocities without contact
-  TwoLevelError error_;                                    ///< of the present iterate
   Best best_;
 };
 

@@ -15,29 +15,35 @@ constexpr std::int32_t chunk_rows = 64;
 
 }  // namespace
 
-/// Divides the islands; both rows of a rigid body are in one chunk.
-void TwoLevelStep::list_chunks(const SystemRows& rows) {
+/// Divides the rows; both rows of a rigid body are in one chunk.
+void TwoLevelStep::list_chunks() {
+  if (version_ == lists_->version) return;
+  version_ = lists_->version;
   chunks_.clear();
-  for (std::size_t i = 0; i < islands_->list().size(); ++i) {
-    const IslandRange& island = islands_->list()[i];
-    for (std::int32_t row = island.row_begin; row < island.row_end;) {
-      std::int32_t end = std::min(row + chunk_rows, island.row_end);
-      if (end < island.row_end && rows.pair[end] == 2) ++end;
-      chunks_.push_back({row, end, static_cast<std::int32_t>(i)});
-      row = end;
-    }
+  const auto count = static_cast<std::int32_t>(lists_->row_count());
+  const SystemRows& all = system_->rows;
+  for (std::int32_t row = 0; row < count; ++row) {
+    const std::int32_t place = lists_->system_row[index_of(row)];
+    const bool is_elastic = lists_->body_at(row).frame >= 0;
+    const bool follows = row > 0 && chunks_.back().is_elastic == is_elastic &&
+                         place - chunks_.back().system_row == row - chunks_.back().row_begin;
+    const bool has_room =
+        follows && (row - chunks_.back().row_begin < chunk_rows || all.pair[place] == 2);
+    if (!has_room) chunks_.push_back({row, row, place, is_elastic});
+    chunks_.back().row_end = row + 1;
   }
   squares_.resize(chunks_.size());
 }
 
 void TwoLevelStep::set(const StepSystem& system,
-                       const TakenIslands& islands,
+                       const CompliantLists& lists,
                        ElasticSpace& elastic,
                        std::vector<double>& weights) {
   const SystemRows& all = system.rows;
-  islands_ = &islands;
+  system_ = &system;
+  lists_ = &lists;
   elastic_ = &elastic;
-  list_chunks(all);
+  list_chunks();
   inverse_.resize(
       index_of(9 * std::int64_t{all.unknown_count} + 36 * std::int64_t{model_.rigid_count}));
   diagonal_ = {all.pair,
@@ -45,32 +51,25 @@ void TwoLevelStep::set(const StepSystem& system,
                all.unknown_count,
                model_.node_count,
                {inverse_.data(), static_cast<std::int64_t>(inverse_.size())}};
-  for (auto* values : {&product_, &pull_, &moved_}) values->resize(3 * index_of(all.count));
-  weights.assign(3 * index_of(all.count), 0.0);
+  const std::int64_t numbers = 3 * lists.row_count();
+  for (auto* values : {&product_, &pull_, &moved_, &weights}) values->resize(index_of(numbers));
   const RowInvertOp<double> invert{all, system.values, diagonal_};
   parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
     const Chunk& chunk = chunks_[index_of(c)];
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      invert(row);
-      const double* const own = system.values.data + 9 * std::int64_t{all.diagonal[row]};
+      const std::int32_t place = chunk.system_row + row - chunk.row_begin;
+      invert(place);
+      const double* const own = system.values.data + 9 * std::int64_t{all.diagonal[place]};
       for (int i = 0; i < 3; ++i) weights[index_of(3 * std::int64_t{row} + i)] = own[4 * i];
     }
   });
 }
 
-double TwoLevelStep::run(const StepSystem& system,
-                         const std::vector<double>& x,
+double TwoLevelStep::run(const std::vector<double>& x,
                          const std::vector<double>& force,
                          std::vector<double>& y) {
-  GradientArrays<double> a;
-  a.rows = system.rows;
-  a.values = a.copy = system.values;
-  a.p = {const_cast<double*>(x.data()), static_cast<std::int64_t>(x.size())};  // only read
-  a.q = {product_.data(), static_cast<std::int64_t>(product_.size())};
-  parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
-    vector_stages().product(a, chunks_[index_of(c)].row_begin, chunks_[index_of(c)].row_end);
-    step_chunk(c, x, force, y);
-  });
+  parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()),
+                 [&](std::int64_t c) { step_chunk(c, x, force, y); });
   double square = step_elastic(x, y);
   for (const double own : squares_) square += own;
   return square;
@@ -119,18 +118,23 @@ void TwoLevelStep::step_chunk(std::int64_t c,
                               const std::vector<double>& force,
                               std::vector<double>& y) {
   const Chunk& chunk = chunks_[index_of(c)];
-  const IslandRange& island = islands_->list()[index_of(chunk.island)];
-  const double omega = island.is_coupled ? relaxation_ : 1;
+  const std::int64_t shift = 3 * (std::int64_t{chunk.row_begin} - chunk.system_row);
+  const std::int64_t end = chunk.system_row + chunk.row_end - chunk.row_begin;
   double* const d = product_.data();
-  const std::int64_t end = 3 * std::int64_t{chunk.row_end};
-  for (std::int64_t i = 3 * std::int64_t{chunk.row_begin}; i < end; ++i)
+  GradientArrays<double> a;
+  a.rows = system_->rows;
+  a.values = a.copy = system_->values;
+  // Columns of the system are rows of the same island.
+  a.p = {const_cast<double*>(x.data()) + shift, static_cast<std::int64_t>(x.size())};  // only read
+  a.q = {d + shift, static_cast<std::int64_t>(product_.size())};
+  vector_stages().product(a, chunk.system_row, end);
+  for (std::int64_t i = 3 * std::int64_t{chunk.row_begin}; i < 3 * std::int64_t{chunk.row_end}; ++i)
     d[i] = force[index_of(i)] - d[i];
   double square = 0;
-  squares_[index_of(c)] = 0;
-  if (island.elastic >= 0) return;
-  for (std::int64_t row = chunk.row_begin; row < chunk.row_end; ++row) {
+  for (std::int64_t row = chunk.row_begin; row < chunk.row_end && !chunk.is_elastic; ++row) {
+    const double omega = lists_->body_at(row).relaxation;
     double z[6];
-    const int count = diagonal_.multiply(row, d + 3 * row, z);
+    const int count = diagonal_.multiply(row + chunk.system_row - chunk.row_begin, d + 3 * row, z);
     for (int i = 0; i < count; ++i) {
       y[index_of(3 * row + i)] = x[index_of(3 * row + i)] + omega * z[i];
       square += omega * d[3 * row + i] * z[i];

@@ -5,48 +5,30 @@
 #include <vector>
 
 #include "host/simulate/solve/two_level/elastic_space.hpp"
-#include "host/simulate/solve/two_level/taken_islands.hpp"
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
 #include "kernels/body/row_product.hpp"
 
 namespace tetwarp {
 
 /// With M^-1 = omega D^-1, D the diagonal blocks of A, and R A_0^-1 R^T for single elastic bodies.
+/// Vectors [rows][3] have the rows of the lists, y what TouchingBlocks adds to them.
 class TwoLevelStep {
  public:
-  /// @param relaxation  omega of islands with several bodies; of single rigid bodies it is 1
-  TwoLevelStep(const Model& model, double relaxation, int threads)
-      : model_(model), relaxation_(relaxation), threads_(threads) {}
+  TwoLevelStep(const Model& model, int threads) : model_(model), threads_(threads) {}
 
   /// Inverts the diagonal blocks.
-  /// @param islands, elastic  kept by the caller
-  /// @param weights           out: diagonal of A, [rows][3]; 0 outside of the islands
+  /// @param system, lists, elastic  kept by the caller
+  /// @param weights                 out: diagonal of A, [rows][3]
   void set(const StepSystem& system,
-           const TakenIslands& islands,
+           const CompliantLists& lists,
            ElasticSpace& elastic,
            std::vector<double>& weights);
 
   /// D^-1.
   const DiagonalInverse<double>& inverse() const { return diagonal_; }
-  /// Numbers of x from the first island's first row up to the last one's end. @pre !is_empty()
-  std::int64_t begin() const { return 3 * std::int64_t{chunks_.front().row_begin}; }
-  std::int64_t end() const { return 3 * std::int64_t{chunks_.back().row_end}; }
-  /// Whether there are no islands.
-  bool is_empty() const { return chunks_.empty(); }
-  /// Calls visit(row) for the rows of all islands.
-  template <class Visit>
-  void for_each_row(const Visit& visit) const {
-    for (const Chunk& chunk : chunks_) {
-      for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) visit(row);
-    }
-  }
-
   /// y = x + M^-1 d, d = force - A x.
-  /// @param x, force  [rows][3]
-  /// @param y         out, as TouchingBlocks has it
   /// @returns d . M^-1 d
-  double run(const StepSystem& system,
-             const std::vector<double>& x,
+  double run(const std::vector<double>& x,
              const std::vector<double>& force,
              std::vector<double>& y);
   /// d of the last run(), [rows][3].
@@ -59,13 +41,14 @@ class TwoLevelStep {
                    std::vector<double>& y);
 
  private:
-  /// Rows of an island that one task takes.
+  /// Rows that one task takes; those of the system follow each other, too.
   struct Chunk {
     std::int32_t row_begin = 0, row_end = 0;
-    std::int32_t island = 0;  ///< in TakenIslands::list()
+    std::int32_t system_row = 0;  ///< of the first one
+    bool is_elastic = false;
   };
 
-  void list_chunks(const SystemRows& rows);
+  void list_chunks();
   void step_chunk(std::int64_t chunk,
                   const std::vector<double>& x,
                   const std::vector<double>& force,
@@ -73,10 +56,11 @@ class TwoLevelStep {
   double step_elastic(const std::vector<double>& x, std::vector<double>& y);
 
   const Model& model_;
-  double relaxation_;
   int threads_;
-  const TakenIslands* islands_ = nullptr;
+  const StepSystem* system_ = nullptr;
+  const CompliantLists* lists_ = nullptr;
   ElasticSpace* elastic_ = nullptr;
+  std::int64_t version_ = 0;  ///< of the lists of the chunks
   std::vector<Chunk> chunks_;
   std::vector<double> inverse_;
   DiagonalInverse<double> diagonal_;

@@ -26,11 +26,11 @@ class CudaResidentTwoLevel final : public ResidentTwoLevel {
 
   SystemRows rows() override { return pipeline_.host_rows(); }
 
-  TwoLevelOutcome solve(const SurfaceBinding& surfaces,
-                        const CompliantLists& lists,
-                        const TwoLevelStart& start,
-                        RestFactors& factors,
-                        const ContactOptions& options) override {
+  CoupledOutcome solve(const SurfaceBinding& surfaces,
+                       const CompliantLists& lists,
+                       const TwoLevelStart& start,
+                       RestFactors& factors,
+                       const ContactOptions& options) override {
     const DeviceScope scope = exec_.enter();
     contact_numbers_ = 3 * start.contacts.size();
     return iteration_.solve(pipeline_.rows(), pipeline_.arrays(), surfaces_.points(surfaces), lists,

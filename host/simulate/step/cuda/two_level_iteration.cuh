@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/step/cuda/two_level_numbers.cuh"
 #include "kernels/contact/anderson.hpp"
+#include "kernels/contact/coupled_iteration.hpp"
 #include "kernels/contact/proximal_step.hpp"
 #include "kernels/exec/iteration_graph.cuh"
 
@@ -29,28 +31,20 @@ class TwoLevelIteration {
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
   /// @param points  of the surfaces, there
-  TwoLevelOutcome solve(const SystemRows& rows,
-                        const StepArrays<CudaExec>& arrays,
-                        View<const SurfacePoint> points,
-                        const CompliantLists& lists,
-                        const TwoLevelStart& start,
-                        RestFactors& factors,
-                        const ContactOptions& options) {
+  CoupledOutcome solve(const SystemRows& rows,
+                       const StepArrays<CudaExec>& arrays,
+                       View<const SurfacePoint> points,
+                       const CompliantLists& lists,
+                       const TwoLevelStart& start,
+                       RestFactors& factors,
+                       const ContactOptions& options) {
     clock_ = {};
     lists_ = &lists;
     options_ = &options;
     switches_ = {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
     numbers_.set(exec_, rows, arrays, points, lists, start, factors);
     resize();
-    TwoLevelOutcome outcome;
-    End end = End::diverges;
-    for (double damping = 1; end == End::diverges; damping /= 2) {
-      prepare(damping);
-      const bool can_be_damped = has_elastic() && damping > TwoLevelControl::least_damping;
-      end = iterate(can_be_damped, outcome);
-    }
-    outcome.is_stopped = end == End::is_stopped;
-    outcome.converged = end == End::converges;
+    CoupledOutcome outcome = solve_coupled<Mixer>(*this);
     outcome.is_result = outcome.converged || outcome.is_stopped;
     return outcome;
   }
@@ -60,8 +54,69 @@ class TwoLevelIteration {
   View<const double> row_velocities() const { return View<const double>(velocity()); }
   View<const std::int32_t> model_block() const { return numbers_.model_block(); }
 
+  // What solve_coupled() calls, which says what they do.
+  using Next = CoupledControl::Next;
+  CudaExec& exec() { return exec_; }
+  View<double> now() { return velocity(); }
+  View<double> image() { return image_.view(); }
+  View<const double> weights() { return numbers_.weight(); }
+  View<double> mixed() { return mixed_.view(); }
+  bool has_elastic() const { return !lists_->model_body.empty(); }
+  Next start(double damping, CoupledOutcome&) {
+    run_.restart();
+    numbers_.set_damping(exec_, damping);
+    exec_.copy(label, numbers_.start_velocity(), velocity());
+    for_each(contact_numbers_ / 3,
+             TouchVelocityOp{rows(), numbers_.start_velocity(), free_velocity_.view()});
+    step(numbers_.preload());
+    least_error_ = CoupledError::least(exec_.load(&sums_.view().data->defect).value[0]);
+    if (numbers_.change().size > 0) {
+      for_each(row_numbers_, AddNumbersOp{numbers_.change(), velocity()});
+    }
+    exec_.copy(label, numbers_.start_impulse(), impulse());
+    return Next::proceeds;
+  }
+  CoupledControl control(bool ends_early) {
+    exec_.make_zeros(none_, contact_numbers_);  // zeros
+    sum_error(const_view(none_), const_view(free_velocity_));
+    return CoupledControl({.has_elastic = has_elastic(),
+                           .ends_early = ends_early,
+                           .tolerance = options_->tolerance,
+                           .natural_alone = exec_.load(sums_.view().data).error.value[0],
+                           .few_sweeps = ProximalState::steps_at_once,
+                           .least_error = least_error_});
+  }
+  std::optional<CoupledError> find_error(const CoupledOutcome&) {
+    step(impulse());
+    for_each(node_start_.view().size / 3,
+             NodeVelocityOp{bodies(), const_view(image_), node_start_.view()});
+    for_each(contact_numbers_ / 3, TouchVelocityOp{rows(), velocity(), contact_velocity()});
+    sum_error(impulse(), contact_velocity());
+    const Sums sums = exec_.load(sums_.view().data);
+    CoupledError error =
+        CoupledError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
+    // Rounding may make inverses of very stiff bodies indefinite; then the host has to solve.
+    if (sums.defect.value[0] < 0) error.total = std::numeric_limits<double>::quiet_NaN();
+    return error;
+  }
+  static void keep(double) {}
+  static double excess(const CoupledOutcome&) { return 0; }
+  Next limit(const CoupledOutcome& outcome) const {
+    if (outcome.sweeps > most_of_solve) return Next::fails;
+    const bool goes_on =
+        !options_->progress || options_->progress({clock_.seconds(), outcome.sweeps, 0});
+    return goes_on ? Next::proceeds : Next::is_stopped;
+  }
+  void solve_contacts(double enough, CoupledOutcome& outcome) {
+    exec_.copy(label, View<const double>(impulse()), stepped_.view());
+    outcome.sweeps += step_contacts(enough);
+    for_each_by_lanes(row_numbers_ / 3,
+                      RowPushOp{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
+    move(const_view(image_));
+  }
+  void take_image() { exec_.copy(label, const_view(image_), velocity()); }
+
  private:
-  enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
   using Mixer = AndersonMixer<CudaExec, double>;
   using Vector = DeviceVector<double>;
   /// Sums that the host reads together.
@@ -82,7 +137,6 @@ class TwoLevelIteration {
   View<double> impulse() const { return part(0, contact_numbers_); }
   View<double> contact_velocity() const { return part(contact_numbers_, contact_numbers_); }
   View<double> velocity() const { return part(2 * contact_numbers_, row_numbers_); }
-  bool has_elastic() const { return !lists_->model_body.empty(); }
   const CompliantBodies& bodies() const { return numbers_.touching().bodies; }
   const TouchingRows& rows() const { return numbers_.touching().rows; }
 
@@ -113,21 +167,6 @@ class TwoLevelIteration {
     state_.resize(1);
   }
 
-  /// Starts from the velocities without contact.
-  void prepare(double damping) {
-    run_.restart();
-    numbers_.set_damping(exec_, damping);
-    exec_.copy(label, numbers_.start_velocity(), velocity());
-    for_each(contact_numbers_ / 3,
-             TouchVelocityOp{rows(), numbers_.start_velocity(), free_velocity_.view()});
-    step(numbers_.preload());
-    least_error_ = TwoLevelError::least(exec_.load(&sums_.view().data->defect).value[0]);
-    if (numbers_.change().size > 0) {
-      for_each(row_numbers_, AddNumbersOp{numbers_.change(), velocity()});
-    }
-    exec_.copy(label, numbers_.start_impulse(), impulse());
-  }
-
   /// image = velocity + M^-1 d, d = b + J^T (r - preload) - A velocity; sums d . M^-1 d.
   void step(View<const double> r) {
     for_each_by_lanes(row_numbers_ / 3, numbers_.defect(velocity(), r, defect_.view()));
@@ -145,58 +184,6 @@ class TwoLevelIteration {
                  TouchErrorOp{numbers_.constants(), switches_, r, u, const_view(free_velocity_)},
                  &sums_.view().data->error);
   }
-  /// The error of impulses and velocities.
-  TwoLevelError find_error() {
-    step(impulse());
-    for_each(node_start_.view().size / 3,
-             NodeVelocityOp{bodies(), const_view(image_), node_start_.view()});
-    for_each(contact_numbers_ / 3, TouchVelocityOp{rows(), velocity(), contact_velocity()});
-    sum_error(impulse(), contact_velocity());
-    const Sums sums = exec_.load(sums_.view().data);
-    TwoLevelError error =
-        TwoLevelError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
-    // Rounding may make inverses of very stiff bodies indefinite; then the host has to solve.
-    if (sums.defect.value[0] < 0) error.total = std::numeric_limits<double>::quiet_NaN();
-    return error;
-  }
-
-  /// @param ends_early  where it diverges
-  End iterate(bool ends_early, TwoLevelOutcome& outcome) {
-    using Next = TwoLevelControl::Next;
-    Mixer mixer(exec_, numbers_.weight(), mixed_.view());
-    exec_.make_zeros(none_, contact_numbers_);  // zeros
-    sum_error(const_view(none_), const_view(free_velocity_));
-    TwoLevelControl control({.has_elastic = has_elastic(),
-                             .ends_early = ends_early,
-                             .tolerance = options_->tolerance,
-                             .natural_alone = exec_.load(sums_.view().data).error.value[0],
-                             .few_sweeps = ProximalState::steps_at_once,
-                             .least_error = least_error_});
-    while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
-      const Next next = control.next(find_error(), outcome.sweeps);
-      outcome.residual = control.residual();
-      if (next == Next::fails) return End::fails;
-      if (next == Next::converges) return End::converges;
-      if (next == Next::diverges) return End::diverges;
-      if (outcome.sweeps > most_of_solve) return End::fails;
-      exec_.copy(label, View<const double>(impulse()), stepped_.view());
-      outcome.sweeps += step_contacts(control.enough());
-      ++outcome.outer_iterations;
-      for_each_by_lanes(row_numbers_ / 3, RowPushOp{bodies(), rows(), impulse(),
-                                                    const_view(stepped_), defect_.view()});
-      move(const_view(image_));
-      if (control.mixes()) {
-        mixer.observe(velocity(), const_view(image_));
-        mixer.advance(velocity(), image_.view());
-      }
-      exec_.copy(label, const_view(image_), velocity());
-      if (options_->progress && !options_->progress({clock_.seconds(), outcome.sweeps, 0})) {
-        return End::is_stopped;
-      }
-    }
-    return End::fails;
-  }
-
   /// Steps until the laws were off by at most `enough` before the last one. @returns the steps
   std::int64_t step_contacts(double enough) {
     constexpr int count = ProximalState::steps_at_once;
@@ -206,7 +193,7 @@ class TwoLevelIteration {
     for (std::int64_t steps = count;; steps += count) {
       make_run(state);
       const ProximalState::Sums sums = exec_.load(&state->sums);
-      const double laws = TwoLevelError::of(0, sums.value[0], 0).laws;
+      const double laws = CoupledError::of(0, sums.value[0], 0).laws;
       if (laws <= enough || steps >= most_steps) return steps;
       if (growths < most_growths && ProximalState::has_missed(sums)) {
         ++growths;

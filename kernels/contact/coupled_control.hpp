@@ -1,27 +1,26 @@
-/// @file two_level_control.hpp
-/// When outer iterations over bodies that touch end, and when the sweeps of each of them do.
+/// @file coupled_control.hpp
+/// When the iteration over bodies and their contacts ends, and when the sweeps of each of its steps
+/// do.
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
-#include <tetwarp/contact.hpp>
-
 namespace tetwarp {
 
-struct TwoLevelOutcome {
+struct CoupledOutcome {
   bool converged = false;
   bool is_result = false;   ///< velocities and impulses are set: converged, or those of the iterate
                             ///< with the least residual where another solver would take too long
-  bool is_stopped = false;  ///< by `progress`
+  bool is_stopped = false;  ///< by the caller
   double residual = 0;
   std::int64_t outer_iterations = 0;
   std::int64_t sweeps = 0;  ///< or proximal steps, on a device
 };
 
 /// Of an iterate; square roots of energies.
-struct TwoLevelError {
+struct CoupledError {
   double equations = 0, laws = 0;  ///< of A v = b + J^T r; of the laws
   double total = 0;                ///< of both
   double work = 0;                 ///< of the impulses
@@ -35,8 +34,8 @@ struct TwoLevelError {
   /// @param defect   d . M^-1 d, d = b + J^T r - A v
   /// @param natural  sum of natural_square()
   /// @param work     r . (u - u without impulses)
-  static TwoLevelError of(double defect, double natural, double work) {
-    TwoLevelError error;
+  static CoupledError of(double defect, double natural, double work) {
+    CoupledError error;
     error.equations = defect_factor * std::sqrt(std::max(defect, 0.0));
     error.laws = law_factor * std::sqrt(natural);
     error.total = std::hypot(error.equations, error.laws);
@@ -50,18 +49,17 @@ struct TwoLevelError {
 };
 
 /// Decides from the errors of successive iterates.
-class TwoLevelControl {
+class CoupledControl {
  public:
-  enum class Next : std::uint8_t { proceeds, converges, diverges, fails };
+  enum class Next : std::uint8_t { proceeds, converges, diverges, fails, is_stopped };
   static constexpr std::int64_t most_iterations = 1000;
   /// The factors of bodies that are bent much are too soft: the iteration then diverges, and is
   /// begun anew with half their compliance, down to this part of it.
   static constexpr double least_damping = 1.0 / 16;
 
-  /// omega of the bodies that A couples to others.
-  static double relaxation(const ContactOptions& options) {
-    return 1.3 * options.expert.relaxation;
-  }
+  /// omega of the nodes and bodies that A couples to others, in simulations.
+  /// @param relaxation  ContactExpertOptions::relaxation
+  static double omega(double relaxation) { return 1.3 * relaxation; }
 
   struct Options {
     bool has_elastic = false;     ///< bodies that are solved by their factors at rest
@@ -69,29 +67,36 @@ class TwoLevelControl {
     double tolerance = 0;         ///< of the error, relative
     double natural_alone = 0;     ///< sum of natural_square() without impulses
     std::int64_t few_sweeps = 2;  ///< the least that an iteration takes, or little more
-    double least_error = 0;       ///< TwoLevelError::least()
+    double least_error = 0;       ///< CoupledError::least()
   };
 
-  explicit TwoLevelControl(const Options& options)
+  explicit CoupledControl(const Options& options)
       : options_(options),
         share_(options.has_elastic ? elastic_share : inner_share),
         final_share_(options.has_elastic ? final_share : 0) {}
 
-  /// @param sweeps  of all outer iterations before; or proximal steps
-  Next next(const TwoLevelError& error, std::int64_t sweeps) {
+  /// @param sweeps   of all outer iterations before; or proximal steps
+  /// @param excess   () -> double, of an iterate within the tolerance: how many times the tolerance
+  ///                 it is off by a closer measure. Where that is more than 1, errors have to
+  ///                 become smaller in proportion
+  template <class Excess>
+  Next next(const CoupledError& error, std::int64_t sweeps, const Excess& excess) {
     const double scale = std::max(std::sqrt(options_.natural_alone) + error.work,
                                   options_.least_error / options_.tolerance);
-    const double target = options_.tolerance * scale;
     residual_ = error.total > 0 ? error.total / scale : 0;
     is_best_ = false;
     if (!std::isfinite(error.total)) return Next::fails;
-    if (error.total <= target) return Next::converges;
+    if (error.total <= options_.tolerance * scale) {
+      const double more = excess();
+      if (more <= 1) return Next::converges;
+      options_.tolerance = 0.9 * residual_ / more;
+    }
     if (!note_residual()) return Next::fails;
     if (options_.ends_early && residual_ > divergence * best_) return Next::diverges;
     // With elastic bodies what the first iteration leaves is far from what the next ones do; and
     // mixed velocities fit the impulses less well than those of the last iteration alone.
     mixes_ = !options_.has_elastic || (iterations_ > 0 && error.equations > error.laws);
-    set_enough(error, target, sweeps);
+    set_enough(error, options_.tolerance * scale, sweeps);
     ++iterations_;
     return Next::proceeds;
   }
@@ -103,7 +108,7 @@ class TwoLevelControl {
   /// Whether velocities of this iteration are mixed with those before by Anderson's method.
   bool mixes() const { return mixes_; }
   /// The sweeps of this iteration end where one changes the impulses by at most this, its proximal
-  /// steps where the laws are off by at most this; as TwoLevelError.
+  /// steps where the laws are off by at most this; as CoupledError.
   double enough() const { return enough_; }
 
  private:
@@ -131,7 +136,7 @@ class TwoLevelControl {
     return iterations_ - marked_at_ < patience;
   }
 
-  void set_enough(const TwoLevelError& error, double target, std::int64_t sweeps) {
+  void set_enough(const CoupledError& error, double target, std::int64_t sweeps) {
     // The change of a sweep is no bound of the error of the laws.
     if (iterations_ > 0 && sweeps - sweeps_before_ <= options_.few_sweeps &&
         error.laws > 0.9 * target) {
