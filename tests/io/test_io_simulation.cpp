@@ -34,12 +34,12 @@ void append(StepMeshWriter& writer, double time, double shift) {
   writer.append(time, values);
 }
 
-const std::vector<StepArray> arrays{{"displacement", false, 3}, {"stress", true, 1}};
+const std::vector<StepArray> step_arrays{{"displacement", false, 3}, {"stress", true, 1}};
 
 TEST(StepMeshWriter, LeavesAFileThatIsCompleteAfterEveryFlush) {
   const ScratchFolder folder;
   const std::string path = folder / "grows.vtkhdf";
-  StepMeshWriter writer(path, one_tet(), arrays);
+  StepMeshWriter writer(path, one_tet(), step_arrays);
   for (int step = 0; step < 3; ++step) {
     append(writer, 0.5 * step, step);
     EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values").size(), static_cast<std::size_t>(step));
@@ -60,7 +60,7 @@ TEST(StepMeshWriter, WritesStepsAtOnceAsOneByOne) {
   const ScratchFolder folder;
   const std::string together = folder / "together.vtkhdf", one_by_one = folder / "one.vtkhdf";
   {
-    StepMeshWriter first(together, one_tet(), arrays), second(one_by_one, one_tet(), arrays);
+    StepMeshWriter first(together, one_tet(), step_arrays), second(one_by_one, one_tet(), step_arrays);
     for (int step = 0; step < 5; ++step) {
       append(first, step, 3 * step);
       append(second, step, 3 * step);
@@ -83,7 +83,7 @@ TEST(StepMeshWriter, WritesStepsAtOnceAsOneByOne) {
 TEST(StepMeshWriter, ForgetsStepsThatCouldNotBeWritten) {
   const ScratchFolder folder;
   const std::string path = folder / "moved.vtkhdf", elsewhere = folder / "elsewhere.vtkhdf";
-  StepMeshWriter writer(path, one_tet(), arrays);
+  StepMeshWriter writer(path, one_tet(), step_arrays);
   append(writer, 0, 1);
   std::filesystem::rename(path, elsewhere);
   EXPECT_THROW(writer.flush(), IoError);
@@ -100,11 +100,11 @@ TEST(StepMeshWriter, GoesOnBehindAStep) {
   const ScratchFolder folder;
   const std::string path = folder / "continued.vtkhdf";
   {
-    StepMeshWriter writer(path, one_tet(), arrays);
+    StepMeshWriter writer(path, one_tet(), step_arrays);
     for (int step = 0; step < 4; ++step) append(writer, step, step);
   }
   {
-    StepMeshWriter writer(path, 4, arrays, 2);
+    StepMeshWriter writer(path, 4, step_arrays, 2);
     EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values").size(), 4u) << "nothing is changed yet";
     writer.drop_later();
     append(writer, 10, 7);
@@ -113,8 +113,8 @@ TEST(StepMeshWriter, GoesOnBehindAStep) {
   EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values"), (std::vector<double>{0, 1, 10}));
   EXPECT_EQ(h5_numbers(path, "VTKHDF/CellData/stress"), (std::vector<double>{0, 1, 7}));
   EXPECT_EQ(MeshReader(path).read_step(2)[0], (Point3{7, 7, 7}));
-  EXPECT_THROW(StepMeshWriter(path, 4, arrays, 5), IoError) << "fewer steps";
-  EXPECT_THROW(StepMeshWriter(path, 5, arrays, 1), IoError) << "other points";
+  EXPECT_THROW(StepMeshWriter(path, 4, step_arrays, 5), IoError) << "fewer steps";
+  EXPECT_THROW(StepMeshWriter(path, 5, step_arrays, 1), IoError) << "other points";
   EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values").size(), 3u);
 }
 
@@ -122,7 +122,7 @@ TEST(StepMeshWriter, KeepsNoFileOpenBetweenSteps) {
   const ScratchFolder folder;
   std::vector<StepMeshWriter> writers;
   for (int n = 0; n < 5; ++n) {
-    writers.emplace_back(folder / ("body" + std::to_string(n) + ".vtkhdf"), one_tet(), arrays);
+    writers.emplace_back(folder / ("body" + std::to_string(n) + ".vtkhdf"), one_tet(), step_arrays);
   }
   for (StepMeshWriter& writer : writers) {
     append(writer, 0, 1);
@@ -135,7 +135,7 @@ TEST(StepMeshWriter, KeepsNoFileOpenBetweenSteps) {
 TEST(StepMeshWriter, RefusesNumbersThatAreNotFinite) {
   const ScratchFolder folder;
   const std::string path = folder / "finite.vtkhdf";
-  StepMeshWriter writer(path, one_tet(), arrays);
+  StepMeshWriter writer(path, one_tet(), step_arrays);
   append(writer, 0, 0);
 
   EXPECT_THROW(append(writer, 1, std::numeric_limits<double>::quiet_NaN()), IoError);
