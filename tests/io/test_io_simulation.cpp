@@ -60,7 +60,8 @@ TEST(StepMeshWriter, WritesStepsAtOnceAsOneByOne) {
   const ScratchFolder folder;
   const std::string together = folder / "together.vtkhdf", one_by_one = folder / "one.vtkhdf";
   {
-    StepMeshWriter first(together, one_tet(), step_arrays), second(one_by_one, one_tet(), step_arrays);
+    StepMeshWriter first(together, one_tet(), step_arrays),
+        second(one_by_one, one_tet(), step_arrays);
     for (int step = 0; step < 5; ++step) {
       append(first, step, 3 * step);
       append(second, step, 3 * step);
