@@ -21,7 +21,7 @@
 namespace tetwarp::view {
 namespace {
 constexpr Rgb contact_color{0.85, 0.10, 0.45}, held_color{0.10, 0.55, 0.20};
-constexpr double longest_arrow = 0.15, ball_radius = 0.006;  // of the size of the scene
+constexpr double longest_arrow = 0.15, ball_radius = 0.003;  // of the size of the scene
 constexpr int plane_squares = 24;
 constexpr double plane_size = 4;  // of the size of the scene
 
