@@ -68,6 +68,8 @@ class CoupledControl {
     double natural_alone = 0;     ///< sum of natural_square() without impulses
     std::int64_t few_sweeps = 2;  ///< the least that an iteration takes, or little more
     double least_error = 0;       ///< CoupledError::least()
+    /// The iteration ends where its least residual has not shrunk to 0.9 of it in so many errors.
+    std::int64_t patience = 150;
   };
 
   explicit CoupledControl(const Options& options)
@@ -112,9 +114,6 @@ class CoupledControl {
   double enough() const { return enough_; }
 
  private:
-  // The iteration ends where its least residual has not shrunk by this factor in this number of
-  // iterations.
-  static constexpr std::int64_t patience = 150;
   static constexpr double least_progress = 0.9;
   // Errors of iterations that converge grow by less than this at times.
   static constexpr double divergence = 30;
@@ -133,7 +132,7 @@ class CoupledControl {
       mark_ = best_;
       marked_at_ = iterations_;
     }
-    return iterations_ - marked_at_ < patience;
+    return iterations_ - marked_at_ < options_.patience;
   }
 
   void set_enough(const CoupledError& error, double target, std::int64_t sweeps) {

@@ -179,8 +179,11 @@ TEST(BadImages, MeshesThatCannotBe) {
   };
   for (const Case& bad : std::vector<Case>{
            {"a.vtk", points, "a.vtk: "},
-           {"b.vtk", points + "CELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n14\n", "split the cells"},
-           {"c.vtk", points + "CELLS 1 7\n6 0 1 2 3 4 5\nCELL_TYPES 1\n13\n", "split the cells"},
+           {"b.vtk", points + "CELLS 1 11\n10 0 1 2 3 4 5 6 7 0 1\nCELL_TYPES 1\n15\n",
+            "split the cells"},
+           {"c.vtk",
+            points + "CELLS 1 21\n20 0 1 2 3 4 5 6 7 0 1 2 3 4 5 6 7 0 1 2 3\nCELL_TYPES 1\n25\n",
+            "split the cells"},
            {"d.vtk", points + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", "or a surface mesh"},
            {"e.vtk", with("4.000000", "nan"),
             "e.vtk: holds no unstructured grid that VTK can read"},

@@ -2,6 +2,7 @@
 /// Contacts of bodies that A couples: a block-Jacobi iteration (outer) around sweeps (inner).
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -87,8 +88,8 @@ class BlockJacobi {
                            task.island.dof_begin, view_of(memory_.weights)});
   }
 
-  /// Iterates until the estimated residual is within the tolerance, the residual no longer shrinks,
-  /// or task.max_iterations are done.
+  /// Iterates until the estimated residual is within the tolerance or a limit of the task is
+  /// reached.
   /// @param impulse        to start from, [3 slots]
   /// @param body_velocity  to start from, [dofs]
   void solve(View<const double> impulse, View<const double> body_velocity, IslandOutcome& outcome) {
@@ -161,7 +162,9 @@ class BlockJacobi {
     sum_error(of_slots(View<const double>(view_of(memory_.velocity))),
               of_slots(estimator_.free_velocity()));
     const double alone = exec_.load(view_of(memory_.sums).data).error.value[0];
-    const CoupledControl control({.tolerance = task_.options.tolerance, .natural_alone = alone});
+    const CoupledControl control({.tolerance = task_.options.tolerance,
+                                  .natural_alone = alone,
+                                  .patience = std::numeric_limits<std::int64_t>::max()});
     CoupledOutcome progress;
     progress.outer_iterations = outcome_->outer_iterations;
     progress.sweeps = outcome_->sweeps;
