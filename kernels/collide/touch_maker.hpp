@@ -138,7 +138,7 @@ class TouchMaker {
     int count = 0;
   };
   TETWARP_HD static Corners corners_of(const SidePoint& side) {
-    Corners own;
+    Corners own = {};
     for (int k = 0; k < 3 && side.vertex[k] >= 0; ++k) {
       if (side.weight[k] > 0) own.vertex[own.count++] = side.vertex[k];
     }

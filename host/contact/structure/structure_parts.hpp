@@ -39,7 +39,8 @@ Lists block_columns(const SparseMatrix& matrix,
                     bool keeps_zeros) {
   Lists rows;
   std::vector<std::int32_t> touched;
-  std::vector<std::size_t> last_range(index_of(blocks), row_start.size());  // with this block
+  std::vector<std::size_t> last_range;  // with this block
+  last_range.assign(index_of(blocks), row_start.size());
   for (std::size_t b = 0; b + 1 < row_start.size(); ++b) {
     touched.clear();
     const std::int64_t last = matrix.row_start[index_of(row_start[b + 1])];

@@ -212,8 +212,9 @@ class StartSearch {
 };
 
 std::string point_text(const Point3& x) {
-  return std::string("(") + number_text(x[0]) + ", " + number_text(x[1]) + ", " +
-         number_text(x[2]) + ")";
+  std::string text;
+  for (const double coordinate : x) text += (text.empty() ? "(" : ", ") + number_text(coordinate);
+  return text + ")";
 }
 
 }  // namespace
