@@ -142,6 +142,7 @@ if(NOT BUILD_SHARED_LIBS)
     $<TARGET_OBJECTS:tetwarp_emulated_contact>
     $<TARGET_OBJECTS:tetwarp_emulated_detector>
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
+    $<TARGET_OBJECTS:tetwarp_emulated_start>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emulated/test_contact_system_emulated.cpp
     tests/emulated/test_two_level_emulated.cpp
