@@ -125,7 +125,7 @@ struct Scene {
   SceneContact contact = {};
   SceneSolver solver = {};
   SceneOutput output = {};
-  /// From where pictures show it, if they are not told otherwise; of no effect on the motion.
+  /// Default camera of pictures and windows; of no effect on the motion.
   std::optional<Camera> camera = {};
   /// What reading its files has merged, a line for each file; of no effect.
   std::vector<std::string> notes = {};

@@ -24,7 +24,7 @@ namespace tetwarp::view {
 
 enum class OrderKind { pause, step, restart, grab, pull, release, volumes_on, volumes_off };
 
-/// What the user wants.
+/// An input of the user: a key or an action of the mouse.
 struct Order {
   OrderKind kind = OrderKind::pause;
   std::size_t body = 0;  ///< of a grab

@@ -1,5 +1,5 @@
 /// @file view_options.hpp
-/// What the command tells the program tetwarp-view.
+/// Options of the program tetwarp-view, which the command starts.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -50,9 +50,8 @@ TETWARP_IO_EXPORT bool is_transform_file(const std::string& path,
 /// - ITK's text (.tfm, .txt), MATLAB (.mat) and HDF5 files: affine, rigid, similarity, scale and
 ///   translation transforms, displacement fields, cubic B-splines and composites of these, in LPS
 /// - NIfTI displacement fields. The intent code states the axes of the components: VECTOR is LPS
-/// and mm
-///   (ITK, ANTs), DISPVECT is RAS in the header's unit, VECTOR named NREG_TRANS is NiftyReg's:
-///   displacements or positions in RAS. Any other needs `axes`
+///   and mm (ITK, ANTs), DISPVECT is RAS in the header's unit, VECTOR named NREG_TRANS is
+///   NiftyReg's: displacements or positions in RAS. Any other needs `axes`
 /// - Warp fields of FSL (intent 2006): relative or absolute, in scaled voxels of the field's and
 ///   the image's grid
 /// - NRRD files and MetaImages of three components: LPS, as ITK and 3D Slicer write them

@@ -1,5 +1,6 @@
 /// @file fsl_field.cpp
-/// Reads the numbers, tells relative from absolute ones, and turns them to displacements in RAS.
+/// Reads the numbers, finds whether they are relative or absolute, and turns them to displacements
+/// in RAS.
 #include "io/transforms/fsl_field.hpp"
 
 #include <array>

@@ -118,6 +118,16 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
   EXPECT_EQ(jobs[5]["counts"]["voxels"], 960);
 }
 
+/// Jobs are warps by a mesh.
+TEST_F(Batch, RefusesOptionsOfFields) {
+  const CommandResult result = run(batch_of({job("a.vtkhdf", R"(, "fsl": "relative")")}));
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("job 1: jobs/jobs.json: --fsl is for warps by a field"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(Batch, MakesTheFoldersOfItsOutputs) {
   const CommandResult result = run(batch_of(
       {job("new/deep/a.vtkhdf", ""), job("new/b.vtkhdf", R"(, "steps": 0, "report": "new/b.json")"),

@@ -68,7 +68,7 @@ LaunchSample sample_of(const std::string& kernel, std::int64_t blocks, std::int6
   const auto one_in = [](std::int64_t all) {
     return std::max<std::int64_t>(1, all / counted_blocks);
   };
-  // Nothing that a step decides depends on samples.
+  // No other kernel depends on the samples that these kernels write.
   if (has(kernel, "PackSource")) return {blocks, false};
   if (has(kernel, "AffineDeviceJob")) return {one_in(blocks), false};
   // The other kernel of the raster has one argument, and computes the cells that groups list.

@@ -1,5 +1,6 @@
 /// @file launch_observer.hpp
-/// Is told what an emulated launch does, and chooses which of its blocks run.
+/// Interface of counters: called by emulated launches for what they do; chooses the blocks that
+/// run.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -153,6 +153,10 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
     try {
       parsed.words = reader.words_of(job);
       parsed.arguments = parse_warp_arguments(parsed.words);
+      if (parsed.arguments.fsl) {
+        throw std::invalid_argument(
+            "--fsl is for warps by a field, a job is one by a mesh; leave it out");
+      }
     } catch (const CLI::ParseError& error) {
       parsed.error = name + one_line(error.what());
     } catch (const std::invalid_argument& error) {
