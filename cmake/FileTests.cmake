@@ -135,14 +135,29 @@ tetwarp_add_cli_tests(tetwarp_cli_memory_tests
 tetwarp_discover(tetwarp_cli_memory_tests long)
 
 # ---- live windows -------------------------------------------------------------------------------
+set(tetwarp_link_tests "")
+if(TETWARP_HAS_SCREENS)
+  set(tetwarp_link_tests tests/view/test_screen_link.cpp)
+endif()
 tetwarp_add_cli_tests(tetwarp_view_tests
+  ${tetwarp_link_tests}
+  tests/view/test_screen_messages.cpp
+  tests/view/test_screens.cpp
   tests/view/test_view_parts.cpp)
 target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_parts)
+if(TETWARP_HAS_SCREENS)
+  target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_link)
+endif()
 tetwarp_discover(tetwarp_view_tests unit)
 if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
   add_test(NAME window COMMAND ${TETWARP_PYTHON3} -B
     ${PROJECT_SOURCE_DIR}/tests/view/check_window.py $<TARGET_FILE:tetwarp_command>)
   set_tests_properties(window PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
+  if(TETWARP_HAS_SCREENS)
+    add_test(NAME screens COMMAND ${TETWARP_PYTHON3} -B
+      ${PROJECT_SOURCE_DIR}/tests/view/check_screens.py $<TARGET_FILE:tetwarp_command>)
+    set_tests_properties(screens PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
+  endif()
 endif()
 
 # ---- the Python package -------------------------------------------------------------------------

@@ -4,10 +4,24 @@ add_library(tetwarp_view_parts STATIC)
 tetwarp_sources(tetwarp_view_parts host/view
   input_log.cpp live_simulation.cpp live_volumes.cpp obstacle_surface.cpp pick.cpp scene_look.cpp
   view_options.cpp view_scene.cpp volume_colors.cpp)
+tetwarp_sources(tetwarp_view_parts host/view/screens
+  off_axis.cpp room.cpp room_file.cpp scene_sharer.cpp screen_keys.cpp screen_message.cpp
+  shared_scene.cpp shared_state.cpp swap_group.cpp)
+# shipped_rooms.cpp: the rooms of scenes/rooms/ as texts, read when the build is configured.
+set(TETWARP_ROOMS "")
+foreach(name amphitheatre cube wall)
+  set(file ${PROJECT_SOURCE_DIR}/scenes/rooms/${name}.json)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(READ ${file} text)
+  string(APPEND TETWARP_ROOMS "    {\"${name}\", R\"room(${text})room\"},\n")
+endforeach()
+configure_file(host/view/screens/shipped_rooms.cpp.in ${PROJECT_BINARY_DIR}/shipped_rooms.cpp @ONLY)
+target_sources(tetwarp_view_parts PRIVATE ${PROJECT_BINARY_DIR}/shipped_rooms.cpp)
 set_target_properties(tetwarp_view_parts PROPERTIES
   UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_view_parts PUBLIC ${PROJECT_SOURCE_DIR})
-target_link_libraries(tetwarp_view_parts PUBLIC tetwarp_io PRIVATE tetwarp_options)
+target_link_libraries(tetwarp_view_parts PUBLIC tetwarp_io
+  PRIVATE nlohmann_json::nlohmann_json tetwarp_options)
 target_compile_options(tetwarp_view_parts PRIVATE $<$<CONFIG:Release>:-O1>)
 
 set(TETWARP_VIEW AUTO CACHE STRING "The window of tetwarp view: AUTO, ON or OFF")
@@ -30,6 +44,24 @@ if(NOT TETWARP_VIEW STREQUAL "OFF")
 endif()
 message(STATUS "tetwarp: window of tetwarp view: ${TETWARP_HAS_VIEW}")
 
+# ---- screens of a room, by ZeroMQ; rooms of ParaView, by expat
+set(TETWARP_SCREENS AUTO CACHE STRING "Screens of tetwarp view: AUTO, ON or OFF")
+set_property(CACHE TETWARP_SCREENS PROPERTY STRINGS AUTO ON OFF)
+set(TETWARP_HAS_SCREENS FALSE)
+if(TETWARP_HAS_VIEW AND NOT TETWARP_SCREENS STREQUAL "OFF")
+  find_path(TETWARP_ZMQ_INCLUDE zmq_addon.hpp)
+  find_library(TETWARP_ZMQ_LIBRARY zmq)
+  find_package(EXPAT QUIET)
+  if(TETWARP_ZMQ_INCLUDE AND TETWARP_ZMQ_LIBRARY AND EXPAT_FOUND)
+    set(TETWARP_HAS_SCREENS TRUE)
+  endif()
+endif()
+if(TETWARP_SCREENS STREQUAL "ON" AND NOT TETWARP_HAS_SCREENS)
+  message(FATAL_ERROR "TETWARP_SCREENS=ON, but the window of tetwarp view, ZeroMQ, its C++ headers or "
+    "expat were not found; install libvtk9-dev, libzmq3-dev, cppzmq-dev and libexpat1-dev")
+endif()
+message(STATUS "tetwarp: screens of tetwarp view: ${TETWARP_HAS_SCREENS}")
+
 set(tetwarp_viewer_folder ${CMAKE_INSTALL_LIBEXECDIR}/tetwarp)
 file(RELATIVE_PATH tetwarp_viewer_path /${CMAKE_INSTALL_BINDIR} /${tetwarp_viewer_folder})
 set_property(SOURCE host/cli/view/cmd_view.cpp PROPERTY COMPILE_DEFINITIONS
@@ -38,15 +70,34 @@ set_property(SOURCE host/cli/view/cmd_view.cpp PROPERTY COMPILE_DEFINITIONS
 if(NOT TETWARP_HAS_VIEW)
   return()
 endif()
+if(TETWARP_HAS_SCREENS)
+  add_library(tetwarp_view_link STATIC)
+  tetwarp_sources(tetwarp_view_link host/view/link
+    room_pvx.cpp screen_link.cpp screen_server.cpp sockets.cpp)
+  set_target_properties(tetwarp_view_link PROPERTIES
+    UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
+  target_include_directories(tetwarp_view_link SYSTEM PUBLIC ${TETWARP_ZMQ_INCLUDE})
+  target_link_libraries(tetwarp_view_link
+    PUBLIC tetwarp_view_parts ${TETWARP_ZMQ_LIBRARY} PRIVATE EXPAT::EXPAT tetwarp_options)
+  target_compile_options(tetwarp_view_link PRIVATE $<$<CONFIG:Release>:-O1>)
+  set(tetwarp_screen_sources screen_window.cpp screens_zmq.cpp)
+else()
+  set(tetwarp_screen_sources screens_nozmq.cpp)
+endif()
 add_executable(tetwarp_view)
 tetwarp_sources(tetwarp_view host/view/window
-  mouse_style.cpp scene_actors.cpp surface_actor.cpp view_window.cpp volume_actors.cpp
+  mouse_style.cpp scene_actors.cpp ${tetwarp_screen_sources} surface_actor.cpp view_window.cpp
+  volume_actors.cpp window_picture.cpp
   ALONE main.cpp)
 set_target_properties(tetwarp_view PROPERTIES
   OUTPUT_NAME tetwarp-view UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_link_libraries(tetwarp_view PRIVATE
   tetwarp_view_parts fmt::fmt ${VTK_LIBRARIES} ${X11_LIBRARIES} tetwarp_options)
+if(TETWARP_HAS_SCREENS)
+  target_link_libraries(tetwarp_view PRIVATE tetwarp_view_link)
+endif()
 target_include_directories(tetwarp_view SYSTEM PRIVATE ${X11_INCLUDE_DIR})
 target_compile_options(tetwarp_view PRIVATE $<$<CONFIG:Release>:-O1>)
 vtk_module_autoinit(TARGETS tetwarp_view MODULES ${VTK_LIBRARIES})
 install(TARGETS tetwarp_view DESTINATION ${tetwarp_viewer_folder})
+install(DIRECTORY scenes/rooms DESTINATION ${CMAKE_INSTALL_DATADIR}/tetwarp)

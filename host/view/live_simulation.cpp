@@ -40,7 +40,7 @@ LiveSimulation::LiveSimulation(Scene scene,
                                std::optional<InputLog> replay)
     : options_(options),
       simulator_(std::move(scene), simulate_options(options)),
-      volumes_(simulator_, options),
+      volumes_(rest_volumes(simulator_), options, simulator_.backend()),
       start_(simulator_.checkpoint()),
       replay_(std::move(replay)),
       is_paused_(options.paused) {
@@ -112,6 +112,7 @@ void LiveSimulation::loop() {
   while (true) {
     repeat_input();
     const bool steps = may_step();
+    if (!is_told_) tell_listener();
     if (!is_published_ && (!steps || !frames_.is_waiting())) publish();
     for (const Order& order : take_orders(!steps)) follow(order);
     const bool has_steps = may_step();
@@ -146,17 +147,17 @@ void LiveSimulation::follow(const Order& order) {
     case OrderKind::pause:
       is_paused_ = !is_paused_;
       due_ = Clock::now();
-      is_published_ = false;
+      note_change();
       return;
     case OrderKind::step:
       single_steps_ = is_paused_ ? single_steps_ + 1 : 0;
       is_paused_ = true;
-      is_published_ = false;
+      note_change();
       return;
     case OrderKind::volumes_on:
     case OrderKind::volumes_off:
       warps_ = order.kind == OrderKind::volumes_on;
-      is_published_ = false;
+      note_change();
       return;
     case OrderKind::restart:
       event.kind = InputKind::restart;
@@ -177,14 +178,14 @@ void LiveSimulation::follow(const Order& order) {
   }
   if (replay_) {
     message_ = "a replay takes no input";
-    is_published_ = false;
+    note_change();
     return;
   }
   act(event);
 }
 
 void LiveSimulation::act(const InputEvent& event) {
-  is_published_ = false;
+  note_change();
   message_.clear();
   try {
     if (event.kind == InputKind::grab) {
@@ -221,7 +222,7 @@ void LiveSimulation::repeat_input() {
 }
 
 void LiveSimulation::take_step() {
-  is_published_ = false;
+  note_change();
   single_steps_ = std::max<std::int64_t>(single_steps_ - 1, 0);
   try {
     simulator_.step();
@@ -248,25 +249,51 @@ void LiveSimulation::wait_for_time() {
   const Clock::time_point now = Clock::now();
   due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(step), now);
   if (due_ == now) return;
+  if (!is_told_) tell_listener();
   if (!is_published_ && !frames_.is_waiting()) publish();
   std::unique_lock lock(mutex_);
   wake_.wait_until(lock, due_, [this] { return is_ending_; });
 }
 
+void LiveSimulation::note_change() {
+  is_published_ = is_told_ = false;
+}
+
+void LiveSimulation::tell_listener() {
+  is_told_ = true;
+  if (!listener_) return;
+  LiveFrame frame;
+  fill(frame);
+  listener_(simulator_, frame);
+}
+
 void LiveSimulation::publish() {
   LiveFrame& frame = frames_.back();
-  frame.step = simulator_.step_index();
-  frame.tick = tick_;
-  frame.time = simulator_.time();
+  fill(frame);
   frame.points.resize(simulator_.scene().bodies.size());
   for (std::size_t b = 0; b < frame.points.size(); ++b) {
     frame.points[b] = simulator_.surface_positions(b);
   }
   if (warps_) {
-    volumes_.warp(frame.volumes);
+    volumes_.warp(
+        [this](std::size_t volume) {
+          const std::size_t body = volumes_.sources()[volume].body.body;
+          return VolumeNodes{&simulator_.body(body).mesh, simulator_.node_positions(body),
+                             simulator_.positions(body)};
+        },
+        frame.volumes);
   } else {
     frame.volumes.clear();
   }
+  frames_.publish();
+  is_published_ = true;
+}
+
+/// All but points and volumes.
+void LiveSimulation::fill(LiveFrame& frame) {
+  frame.step = simulator_.step_index();
+  frame.tick = tick_;
+  frame.time = simulator_.time();
   const StepRecord& record = simulator_.record();
   // Impulses are those of the last part of a step.
   const double part = simulator_.scene().time_step /
@@ -288,8 +315,6 @@ void LiveSimulation::publish() {
   frame.late_steps = late_steps_;
   frame.message = message_;
   frame.has_failed = has_failed_;
-  frames_.publish();
-  is_published_ = true;
 }
 
 }  // namespace tetwarp::view

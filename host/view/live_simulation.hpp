@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -44,7 +45,11 @@ class LiveSimulation {
 
   /// Of the start; not to be used after begin().
   const Simulator& simulator() const { return simulator_; }
-  const std::vector<VolumeBody>& volumes() const { return volumes_.bodies(); }
+  const LiveVolumes& volumes() const { return volumes_; }
+  /// Called by the thread with every state, after each step and each order that changes it, with a
+  /// frame that lacks points and volumes. To be set before begin().
+  using Listener = std::function<void(const Simulator& simulator, const LiveFrame& frame)>;
+  void set_listener(Listener listener) { listener_ = std::move(listener); }
 
   void begin();
   /// Never waits. Of successive pulls only the last one acts.
@@ -77,7 +82,10 @@ class LiveSimulation {
   void take_step();
   void wait_for_time();
   void count_step();
+  void fill(LiveFrame& frame);
+  void tell_listener();
   void publish();
+  void note_change();
   PointHandle handle_at(std::size_t body, const Point3& point) const;
 
   ViewOptions options_;
@@ -98,6 +106,8 @@ class LiveSimulation {
   std::int64_t single_steps_ = 0;  ///< to take while paused
   bool is_paused_ = false, has_failed_ = false, warps_ = true;
   bool is_published_ = false;  ///< whether the state is in a frame
+  bool is_told_ = false;       ///< whether the listener knows it
+  Listener listener_;
   std::optional<Held> held_;
   std::string message_;
   Clock::time_point due_;                  ///< of the next step

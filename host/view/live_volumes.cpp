@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <variant>
 
 #include "host/base/pixel_dispatch.hpp"
@@ -72,46 +73,58 @@ Grid grid_around(const std::vector<Point3>& points,
   return grid;
 }
 
-LiveVolumes::LiveVolumes(const Simulator& simulator, const ViewOptions& options)
-    : simulator_(simulator),
-      most_voxels_(options.voxels),
-      device_(static_cast<int>(options.device)),
-      threads_(static_cast<int>(options.threads)) {
+std::vector<RestVolume> rest_volumes(const Simulator& simulator) {
+  std::vector<RestVolume> sources;
   const std::vector<Body>& bodies = simulator.scene().bodies;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const auto* image = std::get_if<ImageGeometry>(&bodies[b].geometry);
     if (image == nullptr || simulator.body(b).mesh.cell_count() == 0) continue;
-    VolumeBody& body = bodies_.emplace_back();
-    body.body = b;
-    const bool holds_labels =
-        bodies[b].lookup == TransferLookup::label && !bodies[b].transfer.empty();
-    followers_.push_back({scaled(image->volume, body), holds_labels, {}, {}});
+    RestVolume& source = sources.emplace_back();
+    source.body.body = b;
+    source.holds_labels = bodies[b].lookup == TransferLookup::label && !bodies[b].transfer.empty();
+    source.volume = scaled(image->volume, source.body);
   }
-  if (!bodies_.empty()) most_voxels_ /= static_cast<std::int64_t>(bodies_.size());
+  return sources;
 }
 
-void LiveVolumes::place(std::size_t volume, const std::vector<Point3>& nodes) {
+LiveVolumes::LiveVolumes(std::vector<RestVolume> sources,
+                         const ViewOptions& options,
+                         Backend backend)
+    : sources_(std::move(sources)),
+      followers_(sources_.size()),
+      most_voxels_(options.voxels),
+      device_(static_cast<int>(options.device)),
+      threads_(static_cast<int>(options.threads)),
+      backend_(backend) {
+  if (!sources_.empty()) most_voxels_ /= static_cast<std::int64_t>(sources_.size());
+}
+
+void LiveVolumes::place(std::size_t volume, const VolumeNodes& nodes) {
   Follower& follower = followers_[volume];
-  if (follower.warper && lies_in(nodes, follower.grid)) return;
-  follower.grid = grid_around(nodes, std::ranges::min(follower.source.grid.spacing), most_voxels_);
+  if (follower.warper && lies_in(nodes.places, follower.grid)) return;
+  const RestVolume& source = sources_[volume];
+  follower.grid =
+      grid_around(nodes.places, std::ranges::min(source.volume.grid.spacing), most_voxels_);
   WarpOptions options;
-  options.filter = follower.holds_labels ? Filter::nearest : Filter::linear;
+  options.filter = source.holds_labels ? Filter::nearest : Filter::linear;
   options.output_grid = follower.grid;
-  options.backend = simulator_.backend();
+  options.backend = backend_;
   options.device = device_;
   options.threads = threads_;
-  follower.warper.emplace(follower.source, simulator_.body(bodies_[volume].body).mesh, options);
+  follower.warper.emplace(source.volume, *nodes.mesh, options);
 }
 
-void LiveVolumes::warp(std::vector<VolumeFrame>& frames) {
-  frames.resize(bodies_.size());
-  for (std::size_t v = 0; v < bodies_.size(); ++v) {
-    place(v, simulator_.node_positions(bodies_[v].body));
-    const Follower& follower = followers_[v];
+void LiveVolumes::warp(const std::function<VolumeNodes(std::size_t volume)>& nodes_of,
+                       std::vector<VolumeFrame>& frames) {
+  frames.resize(sources_.size());
+  for (std::size_t v = 0; v < sources_.size(); ++v) {
+    const VolumeNodes nodes = nodes_of(v);
+    place(v, nodes);
+    Follower& follower = followers_[v];
     frames[v].grid = follower.grid;
     frames[v].samples.resize(static_cast<std::size_t>(follower.grid.voxel_count()));
     void* const samples = frames[v].samples.data();
-    followers_[v].warper->step(simulator_.positions(bodies_[v].body), {.volumes = {&samples, 1}});
+    follower.warper->step(nodes.view, {.volumes = {&samples, 1}});
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -20,30 +21,47 @@ struct VolumeBody {
   double low = 0, high = 1;
 };
 
+/// The volume of a body at rest.
+struct RestVolume {
+  VolumeBody body;
+  Volume volume;  ///< one int16 per voxel
+  bool holds_labels = false;
+};
+
+/// The mesh that warps a volume, and where its nodes are.
+struct VolumeNodes {
+  const Mesh* mesh = nullptr;
+  std::vector<Point3> places;  ///< on the host
+  PositionsView view;          ///< the same, for the warp
+};
+
 class LiveVolumes {
  public:
-  /// @param simulator  kept by the caller
-  LiveVolumes(const Simulator& simulator, const ViewOptions& options);
+  /// @param options  voxels, device and threads
+  LiveVolumes(std::vector<RestVolume> sources, const ViewOptions& options, Backend backend);
 
-  const std::vector<VolumeBody>& bodies() const { return bodies_; }
-  /// Warps all volumes to the state of the simulator.
-  void warp(std::vector<VolumeFrame>& frames);
+  const std::vector<RestVolume>& sources() const { return sources_; }
+  /// Warps all volumes to where the nodes of their bodies are.
+  /// @param nodes_of  of a volume; called once for each
+  void warp(const std::function<VolumeNodes(std::size_t volume)>& nodes_of,
+            std::vector<VolumeFrame>& frames);
 
  private:
   struct Follower {
-    Volume source;  ///< one int16 per voxel
-    bool holds_labels = false;
     std::optional<Warper> warper;
     Grid grid;
   };
-  void place(std::size_t volume, const std::vector<Point3>& nodes);
+  void place(std::size_t volume, const VolumeNodes& nodes);
 
-  const Simulator& simulator_;
-  std::int64_t most_voxels_;  ///< of each volume
+  std::vector<RestVolume> sources_;
+  std::vector<Follower> followers_;  ///< [sources_]
+  std::int64_t most_voxels_;         ///< of each volume
   int device_, threads_;
-  std::vector<VolumeBody> bodies_;
-  std::vector<Follower> followers_;  ///< [bodies_]
+  Backend backend_;
 };
+
+/// The volumes of all bodies that are made of one and have a mesh.
+std::vector<RestVolume> rest_volumes(const Simulator& simulator);
 
 /// A grid along the world's axes around points, with a margin of a tenth of their box on all sides.
 /// @param least_spacing  [m]

@@ -34,6 +34,14 @@ void visit_members(Options& of, const Visit& visit) {
   visit("record", of.record);
   visit("replay", of.replay);
   visit("checkpoint", of.checkpoint);
+  visit("screens", of.screens);
+  visit("address", of.address);
+  visit("key", of.key);
+  visit("join", of.join);
+  visit("screen", of.screen);
+  visit("ends_with_master", of.ends_with_master);
+  visit("tracker", of.tracker);
+  visit("make_keys", of.make_keys);
 }
 
 void write(std::string& text, const std::string& value) {

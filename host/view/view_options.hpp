@@ -28,6 +28,13 @@ struct ViewOptions {
   std::optional<double> grab_radius;                   ///< [m]
   std::optional<double> grab_stiffness;                ///< [N/m]
   std::string screenshot, record, replay, checkpoint;  ///< files; empty: none
+  std::string screens;            ///< room file or name of one that ships; empty: none
+  std::string address;            ///< that a master listens at, in place of the room's
+  std::string key;                ///< file of keys; empty: none
+  std::string join, screen;       ///< address of the master to follow, name of the screen to show
+  bool ends_with_master = false;  ///< of a screen that the master started
+  bool tracker = false;           ///< sends poses of the head instead of showing a screen
+  std::string make_keys;          ///< name of key files to write, instead of all else
 
   bool operator==(const ViewOptions&) const = default;
 

@@ -12,7 +12,9 @@ ViewScene view_scene_of(const LiveSimulation& simulation, const ViewOptions& opt
   ViewScene scene;
   scene.name = options.scene();
   scene.obstacles = simulator.scene().obstacles;
-  scene.volumes = simulation.volumes();
+  for (const RestVolume& source : simulation.volumes().sources()) {
+    scene.volumes.push_back(source.body);
+  }
   scene.max_step_seconds = options.max_step_seconds;
   Bounds bounds;
   for (std::size_t b = 0; b < simulator.scene().bodies.size(); ++b) {

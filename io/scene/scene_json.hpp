@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/io_export.hpp>
 #include <tetwarp/names.hpp>
 #include <tetwarp/volume.hpp>
 
@@ -17,10 +18,10 @@ using SceneJson = nlohmann::ordered_json;
 
 /// Parses a document; an object with a key twice is an error as well.
 /// @param file  for messages
-SceneJson parse_json(const std::string& text, const std::string& file);
+TETWARP_IO_EXPORT SceneJson parse_json(const std::string& text, const std::string& file);
 
 /// One value of a document.
-class SceneValue {
+class TETWARP_IO_EXPORT SceneValue {
  public:
   /// @param json  kept by the caller, as is `file`
   SceneValue(const SceneJson& json, const std::string& file, std::string place)
@@ -88,7 +89,7 @@ class SceneValue {
 };
 
 /// An object whose keys are read one by one. finish() complains about keys that were not.
-class SceneObject {
+class TETWARP_IO_EXPORT SceneObject {
  public:
   explicit SceneObject(const SceneValue& value, const std::string& expected = "an object {...}");
 

@@ -99,7 +99,10 @@ ALLOWED = {
     "io/transforms": ["io/nifti", "io/h5", "io/files", *IO],
     "io/picture": ["io/files", *IO],
     "host/view": ["io/tetwarp", "io/files", "host/base", *BASE],
-    "host/view/window": ["host/view", "io/tetwarp", "io/files", "host/base", *BASE],
+    "host/view/screens": ["host/view", "io/scene", "io/tetwarp", "host/base", *BASE],
+    "host/view/link": ["host/view/screens", "host/base", *BASE],
+    "host/view/window": [
+        "host/view", "host/view/link", "host/view/screens", "io/tetwarp", "io/files", "host/base", *BASE],
     "host/cli/common": CLI,
     "host/cli/contact": ["host/cli/common", *CLI],
     "host/cli/job": ["host/cli/common", *CLI],

@@ -20,6 +20,7 @@
 #include "host/view/view_options.hpp"
 #include "host/view/volume_colors.hpp"
 #include "tests/support/run_command.hpp"
+#include "tests/view/live_scene.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -71,6 +72,8 @@ TEST(ViewOptions, AreTheSameAfterTheirWords) {
   options.camera = {{0.1, -2, 1e-30, 4, 5, 1.0 / 3}};
   options.grab_radius = 0.7;
   options.record = "input.txt";
+  options.join = "tcp://master:5611";
+  options.ends_with_master = true;
   EXPECT_EQ(options_of(words_of(options)), options);
   for (const std::string word : {"thread=3", "threads", "threads=x", "paused=2", "camera=1,2"}) {
     EXPECT_THROW(options_of({word}), std::invalid_argument) << word;
@@ -176,36 +179,6 @@ TEST(VolumeColors, FollowHounsfieldUnitsAndTheWindow) {
   EXPECT_NEAR(value(tomography.gray()[1]), 1000, 1e-9);
   const VolumeColors other("mr", 0, 1);
   EXPECT_EQ(other.gray()[1], largest_sample);
-}
-
-/// A block of tissue that stands fast, with a volume, and a ball on it.
-Scene live_scene() {
-  Scene scene;
-  scene.time_step = 0.01;
-  Grid grid{.dims = {8, 8, 12}, .origin = {-0.07, -0.07, -0.11}, .spacing = {0.02, 0.02, 0.02}};
-  Volume volume = make_volume(grid, PixelType::float32);
-  for (float& sample : volume.samples<float>()) sample = 1;
-  Body block;
-  block.name = "block";
-  block.geometry = ImageGeometry{std::move(volume), 0.5};
-  block.lattice = Lattice{.cells = {{2, 2, 3}}};
-  block.material = {1e4, 0.3, 1000};
-  block.fixed = {HalfSpaceSelection{{0, 0, -1}, 0.1}};
-  Body ball;
-  ball.name = "ball";
-  ball.kind = BodyKind::rigid;
-  ball.geometry = Shape{EllipsoidShape{{0.03, 0.03, 0.03}}};
-  ball.pose.position = {0, 0, 0.17};
-  scene.bodies = {block, ball};
-  return scene;
-}
-
-/// Waits for a frame of at least so many steps.
-LiveFrame& frame_at(LiveSimulation& simulation, std::int64_t tick) {
-  while (!simulation.frames().take() || simulation.frames().front().tick < tick) {
-    std::this_thread::yield();
-  }
-  return simulation.frames().front();
 }
 
 TEST(LiveSimulation, StepsOnOrderAndPullsWhatIsGrabbed) {

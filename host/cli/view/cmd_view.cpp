@@ -44,7 +44,7 @@ std::string find_viewer() {
 /// Replaces this process.
 int run_view(const view::ViewOptions& options) {
   std::vector<std::string> inputs;
-  for (const std::string& file : {options.scene_file, options.replay}) {
+  for (const std::string& file : {options.scene_file, options.replay, options.key}) {
     if (!file.empty()) inputs.push_back(file);
   }
   for (const std::string& file : {options.screenshot, options.record, options.checkpoint}) {
@@ -130,12 +130,53 @@ void declare_input(CLI::App& app, view::ViewOptions& options) {
       ->type_name("FILE");
 }
 
+void declare_screens(CLI::App& app, view::ViewOptions& options) {
+  app.add_option(
+         "--screens", options.screens,
+         "draw on the screens of a room as well: JSON, a .pvx file of ParaView, or the name "
+         "of a room that ships: wall, cube, amphitheatre")
+      ->type_name("ROOM");
+  app.add_option("--address", options.address,
+                 "where screens find this program [that of the room, tcp://127.0.0.1:5611]")
+      ->type_name("tcp://INTERFACE:PORT");
+  app.add_option("--join", options.join, "draw a screen of a program on another machine")
+      ->type_name("tcp://HOST:PORT");
+  app.add_option("--screen", options.screen, "which screen, with --join")->type_name("NAME");
+  app.add_flag(
+      "--tracker", options.tracker,
+      "with --join: send poses of the head, lines x y z [qw qx qy qz], from standard input");
+  app.add_option("--key", options.key, "keys of the room, which other machines need")
+      ->check(CLI::ExistingFile.description(""))
+      ->type_name("FILE");
+  app.add_option("--make-keys", options.make_keys,
+                 "write NAME.key for this program and NAME_screen.key for its screens")
+      ->type_name("NAME");
+}
+
 void check_view(const view::ViewOptions& options) {
   const bool has_limit = options.max_step_seconds < std::numeric_limits<double>::infinity();
   if (has_limit && (!options.record.empty() || !options.replay.empty())) {
     throw CLI::ValidationError("--max-step-seconds",
                                "steps that end by the clock cannot be repeated; leave it out with "
                                "--record and --replay");
+  }
+  const bool shows_scene = !options.scene().empty();
+  if (shows_scene == (!options.join.empty() || !options.make_keys.empty())) {
+    throw CLI::ValidationError(
+        "SCENE", shows_scene ? "is that of the master; leave it out with --join and --make-keys"
+                             : "is missing: a file, or the name of a scene that ships");
+  }
+  if (options.join.empty() && (!options.screen.empty() || options.tracker)) {
+    throw CLI::ValidationError("--screen and --tracker", "need --join ADDRESS");
+  }
+  if (!options.join.empty() && options.screen.empty() != options.tracker) {
+    throw CLI::ValidationError("--join", "needs either --screen NAME or --tracker");
+  }
+  if (options.screens.empty() && options.join.empty() && !options.key.empty()) {
+    throw CLI::ValidationError("--key", "needs --screens or --join");
+  }
+  if (options.screens.empty() && !options.address.empty()) {
+    throw CLI::ValidationError("--address", "needs --screens");
   }
   if (!options.screenshot.empty() && !options.screenshot.ends_with(".png")) {
     throw CLI::ValidationError("--screenshot", "the name of a picture ends in .png");
@@ -151,16 +192,18 @@ void add_view_command(CLI::App& app, Run& run) {
                      "  tetwarp view torso\n"
                      "  tetwarp view scene.json --paused --max-step-seconds 0.02\n"
                      "  tetwarp view candy --steps 100 --screenshot candy.png\n"
+                     "  tetwarp view torso --screens wall\n"
+                     "  tetwarp view --join tcp://master:5611 --screen left --key room_screen.key\n"
                      "Key h shows what mouse and keys do.\n");
   command
       ->add_option_function<std::string>(
           "SCENE", [options](const std::string& scene) { set_scene(scene, *options); },
           "scene file, or the name of a scene that ships with the command")
-      ->required()
       ->type_name("");
   declare_picture(*command, *options);
   declare_simulation(*command, *options);
   declare_input(*command, *options);
+  declare_screens(*command, *options);
   command->callback([options, &run] {
     check_view(*options);
     run = [options] { return run_view(*options); };

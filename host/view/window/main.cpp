@@ -18,6 +18,7 @@
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_options.hpp"
 #include "host/view/view_scene.hpp"
+#include "host/view/window/screens.hpp"
 #include "host/view/window/view_window.hpp"
 #include "io/files/finished_file.hpp"
 
@@ -69,8 +70,12 @@ extern "C" void note_signal(int signal) {
 }
 
 /// A signal ends it as the key q does.
-void run(const ViewOptions& options) {
-  check_display();
+void take_signals() {
+  std::signal(SIGINT, note_signal);
+  std::signal(SIGTERM, note_signal);
+}
+
+void show_scene(const ViewOptions& options) {
   std::optional<InputLog> replay = replay_of(options);
   Scene loaded = load(options);
   std::optional<LiveSimulation> simulation;
@@ -80,16 +85,27 @@ void run(const ViewOptions& options) {
     throw IoError(options.scene(), "", error.what());
   }
   const ViewScene scene = view_scene_of(*simulation, options);
-  ViewWindow window(scene, *simulation, options);
+  std::optional<MasterScreens> screens;
+  if (!options.screens.empty()) screens.emplace(*simulation, scene, options);
+  ViewWindow window(scene, *simulation, options, screens ? &*screens : nullptr);
+  take_signals();
+  if (screens) screens->wait_for_screens();
   simulation->begin();
-  std::signal(SIGINT, note_signal);
-  std::signal(SIGTERM, note_signal);
   window.run(signal_number);
   const std::string problem = window.failure();
   if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   simulation->end();
   write_results(*simulation, options);
   if (!problem.empty()) throw std::runtime_error(options.scene() + ": " + problem);
+}
+
+void run(const ViewOptions& options) {
+  if (!options.make_keys.empty()) return write_screen_keys(options.make_keys);
+  if (options.tracker) return send_head(options);
+  check_display();
+  if (options.join.empty()) return show_scene(options);
+  take_signals();
+  show_screen(options, signal_number);
 }
 
 }  // namespace

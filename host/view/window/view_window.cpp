@@ -5,14 +5,11 @@
 #include <fmt/format.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
-#include <vtkImageData.h>
 #include <vtkTextProperty.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <numbers>
 #include <string_view>
@@ -20,6 +17,7 @@
 #include <thread>
 
 #include "host/base/point3.hpp"
+#include "host/view/window/window_picture.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -43,8 +41,9 @@ void style_text(vtkTextActor* text, int size) {
 
 ViewWindow::ViewWindow(const ViewScene& scene,
                        LiveSimulation& simulation,
-                       const ViewOptions& options)
-    : scene_(scene), simulation_(simulation), options_(options) {
+                       const ViewOptions& options,
+                       MasterScreens* screens)
+    : scene_(scene), simulation_(simulation), options_(options), screens_(screens) {
   set_up_window();
   set_up_mouse();
 }
@@ -110,11 +109,28 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   events_->AddObserver(vtkCommand::TimerEvent, tick);
   events_->CreateRepeatingTimer(timer_interval);
   draw();
+  tell_screens();
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
   events_->Start();
 }
 
+/// The screens follow the camera and what is shown.
+void ViewWindow::tell_screens() {
+  if (screens_ == nullptr) return;
+  vtkCamera* const camera = renderer_->GetActiveCamera();
+  MasterView view;
+  camera->GetPosition(view.camera.eye.data());
+  camera->GetFocalPoint(view.camera.target.data());
+  camera->GetViewUp(view.camera.up.data());
+  view.volumes = look_;
+  view.shows_contacts = shows_contacts_;
+  view.level = level_;
+  view.width = width_;
+  screens_->set_view(view);
+}
+
 void ViewWindow::on_timer() {
+  tell_screens();
   if (simulation_.frames().take()) {
     LiveFrame& frame = simulation_.frames().front();
     if (frame.points.size() == scene_.triangles.size()) {
@@ -164,6 +180,7 @@ std::string ViewWindow::overlay() {
     text += "\nabove its tolerance";
   }
   if (frame.grab) text += fmt::format("\npull {:.3g} N", norm(frame.grab->force));
+  if (screens_ != nullptr) text += "\n" + screens_->status();
   if (!frame.message.empty()) text += "\n" + frame.message;
   if (!note_.empty()) text += "\n" + note_;
   return text;
@@ -245,22 +262,9 @@ bool ViewWindow::turn_window(int x, int y) {
 void ViewWindow::save_picture(const std::string& path) {
   volumes_->set_coarse(false);
   volumes_->show(simulation_.frames().front());
-  vtkNew<vtkWindowToImageFilter> reader;
-  reader->SetInput(window_);
-  reader->ReadFrontBufferOff();
-  reader->Update();
-  vtkImageData* const picture = reader->GetOutput();
-  int size[3];
-  picture->GetDimensions(size);
-  Image image{size[0], size[1], {}};
-  const auto row_bytes = static_cast<std::size_t>(3 * size[0]);
-  image.rgb.resize(row_bytes * static_cast<std::size_t>(size[1]));
-  for (int row = 0; row < size[1]; ++row) {  // VTK's first row is the lowest
-    std::memcpy(image.rgb.data() + row_bytes * static_cast<std::size_t>(size[1] - 1 - row),
-                picture->GetScalarPointer(0, row, 0), row_bytes);
-  }
+  const Image picture = picture_of(window_);
   volumes_->set_coarse(is_software_);
-  write_png(path, image);
+  write_png(path, picture);
 }
 
 std::string ViewWindow::failure() {

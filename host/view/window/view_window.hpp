@@ -17,6 +17,7 @@
 #include "host/view/view_scene.hpp"
 #include "host/view/window/mouse_style.hpp"
 #include "host/view/window/scene_actors.hpp"
+#include "host/view/window/screens.hpp"
 #include "host/view/window/volume_actors.hpp"
 
 namespace tetwarp::view {
@@ -25,7 +26,11 @@ namespace tetwarp::view {
 class ViewWindow {
  public:
   /// @param scene, simulation, options  kept by the caller
-  ViewWindow(const ViewScene& scene, LiveSimulation& simulation, const ViewOptions& options);
+  /// @param screens  that show what this window does, or null; kept by the caller
+  ViewWindow(const ViewScene& scene,
+             LiveSimulation& simulation,
+             const ViewOptions& options,
+             MasterScreens* screens);
 
   /// Draws until the user, a signal or the last step ends it.
   /// @param is_interrupted  not 0: a signal ends it
@@ -42,6 +47,7 @@ class ViewWindow {
   void set_up_mouse();
   void on_timer();
   void draw();
+  void tell_screens();
   void press(const std::string& key);
   bool grab(int x, int y);
   void pull(int x, int y);
@@ -55,6 +61,7 @@ class ViewWindow {
   const ViewScene& scene_;
   LiveSimulation& simulation_;
   const ViewOptions& options_;
+  MasterScreens* screens_;
   vtkNew<vtkRenderer> renderer_;
   vtkNew<vtkRenderWindow> window_;
   vtkNew<vtkRenderWindowInteractor> events_;

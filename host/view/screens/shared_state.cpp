@@ -1,0 +1,105 @@
+/// @file shared_state.cpp
+/// States as bytes, and the points of surfaces that follow from them.
+#include "host/view/screens/shared_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp::view {
+namespace {
+Point3 wide(const Float3& x) {
+  return {x[0], x[1], x[2]};
+}
+
+bool is_finite_float(const Float3& x) {
+  return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
+}
+
+std::vector<Point3> surface_of_body(const SharedBody& body, const std::vector<Float3>& moving) {
+  std::vector<Point3> points;
+  if (body.form == BodyForm::nodes) {
+    for (std::size_t p = 0; p < body.nodes.size(); ++p) {
+      Point3 sum{};
+      for (std::size_t n = 0; n < 4; ++n) {
+        const auto node = static_cast<std::size_t>(body.nodes[p][n]);
+        sum = plus(sum, times(body.weights[p][n], wide(moving[node])));
+      }
+      points.push_back(sum);
+    }
+  } else if (body.form == BodyForm::pose) {
+    for (const Point3& rest : body.rest_points) {
+      Point3 sum = wide(moving[0]);
+      for (std::size_t a = 0; a < 3; ++a) sum = plus(sum, times(rest[a], wide(moving[a + 1])));
+      points.push_back(sum);
+    }
+  } else {
+    for (const Float3& x : moving) points.push_back(wide(x));
+  }
+  return points;
+}
+}  // namespace
+
+Bytes bytes_of(const SharedState& state) {
+  ByteWriter to;
+  to.add(state.step);
+  to.add(state.time);
+  to.add(static_cast<std::uint8_t>(state.is_paused));
+  to.add(static_cast<std::uint64_t>(state.moving.size()));
+  for (const auto& points : state.moving) to.add_list(points);
+  to.add_list(state.contacts);
+  to.add(static_cast<std::uint8_t>(state.grab.has_value()));
+  if (state.grab) to.add(*state.grab);
+  return to.take();
+}
+
+SharedState state_of(std::span<const std::byte> bytes, const SharedScene& scene) {
+  ByteReader from(bytes);
+  SharedState state;
+  state.step = from.get<std::int64_t>();
+  state.time = from.get<double>();
+  state.is_paused = from.get_bool();
+  bool is_good = std::isfinite(state.time) && from.get_count(8) == scene.bodies.size();
+  for (std::size_t b = 0; is_good && b < scene.bodies.size(); ++b) {
+    const auto& points = state.moving.emplace_back(from.get_list<Float3>());
+    is_good = points.size() == static_cast<std::size_t>(scene.bodies[b].moving_count) &&
+              std::ranges::all_of(points, is_finite_float);
+  }
+  if (!is_good) throw std::invalid_argument("no state of this scene");
+  state.contacts = from.get_list<std::array<Float3, 2>>();
+  if (from.get_bool()) state.grab = from.get<std::array<Float3, 2>>();
+  from.end();
+  const auto are_finite = [](const std::array<Float3, 2>& pair) {
+    return is_finite_float(pair[0]) && is_finite_float(pair[1]);
+  };
+  if (!std::ranges::all_of(state.contacts, are_finite) ||
+      (state.grab && !are_finite(*state.grab))) {
+    throw std::invalid_argument("a number that is not finite");
+  }
+  return state;
+}
+
+std::vector<Point3> nodes_of(const SharedState& state, std::size_t body) {
+  std::vector<Point3> nodes;
+  for (const Float3& x : state.moving[body]) nodes.push_back(wide(x));
+  return nodes;
+}
+
+void set_frame(const SharedScene& scene, const SharedState& state, LiveFrame& frame) {
+  frame.step = state.step;
+  frame.time = state.time;
+  frame.is_paused = state.is_paused;
+  frame.points.resize(scene.bodies.size());
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    frame.points[b] = surface_of_body(scene.bodies[b], state.moving[b]);
+  }
+  frame.contacts.clear();
+  for (const auto& [place, force] : state.contacts) {
+    frame.contacts.push_back({wide(place), wide(force)});
+  }
+  frame.grab.reset();
+  if (state.grab) frame.grab = GrabView{wide((*state.grab)[0]), wide((*state.grab)[1]), {}};
+}
+
+}  // namespace tetwarp::view

@@ -1,0 +1,31 @@
+/// @file window_picture.cpp
+/// Pixels of a window.
+#include "host/view/window/window_picture.hpp"
+
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <cstring>
+
+namespace tetwarp::view {
+
+Image picture_of(vtkRenderWindow* window) {
+  vtkNew<vtkWindowToImageFilter> reader;
+  reader->SetInput(window);
+  reader->ReadFrontBufferOff();
+  reader->Update();
+  vtkImageData* const picture = reader->GetOutput();
+  int size[3];
+  picture->GetDimensions(size);
+  Image image{size[0], size[1], {}};
+  const auto row_bytes = static_cast<std::size_t>(3 * size[0]);
+  image.rgb.resize(row_bytes * static_cast<std::size_t>(size[1]));
+  for (int row = 0; row < size[1]; ++row) {  // VTK's first row is the lowest
+    std::memcpy(image.rgb.data() + row_bytes * static_cast<std::size_t>(size[1] - 1 - row),
+                picture->GetScalarPointer(0, row, 0), row_bytes);
+  }
+  return image;
+}
+
+}  // namespace tetwarp::view

@@ -1,0 +1,207 @@
+#!/usr/bin/env python3
+"""A room of three screens in real windows: what they show is where a room's geometry says.
+
+    check_screens.py COMMAND    exit status 77 where Xvfb or xdotool is missing
+
+The master starts the screens left and front; the screen right, in stereo, joins by a key, is killed
+and joins again.
+"""
+import math
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from check_window import SECONDS, Display, fail, pixels_of
+
+PIXELS = 240  # width and height of each screen
+EYE, EYE_SEPARATION, FOCUS = (0.3, 1.2, 0.2), 0.3, 1.5
+CORNERS = {  # lower left, lower right, upper right of a cube of 3 m
+    "left": ((-1.5, 0, 1.5), (-1.5, 0, -1.5), (-1.5, 3, -1.5)),
+    "front": ((-1.5, 0, -1.5), (1.5, 0, -1.5), (1.5, 3, -1.5)),
+    "right": ((1.5, 0, -1.5), (1.5, 0, 1.5), (1.5, 3, 1.5))}
+# The camera looks along y, with 0.1 m of the world for a meter of the room.
+CAMERA_EYE, CAMERA_TARGET, METER = (0, 0, 0), (0, 0.15, 0), 0.1
+BALLS = {"orange": ((-0.18, 0.17, 0.01), 0.05),  # across the edge of left and front
+         "blue": ((0.02, 0.2, 0.03), 0.01),      # on front
+         "green": ((0.3, 0.05, 0.02), 0.025)}    # on right
+
+
+def world_of(x):
+    """A point of the room: x is x, y is z, and back is minus y of the world."""
+    dx, dy, dz = (METER * (a - b) for a, b in zip(x, EYE))
+    return dx, -dz, dy
+
+
+def minus(a, b):
+    return tuple(x - y for x, y in zip(a, b))
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def unit(a):
+    size = math.sqrt(dot(a, a))
+    return tuple(x / size for x in a)
+
+
+def seen(screen, x, shift=0):
+    """Where a screen shows a point of the world to an eye that is `shift` to the right: shares of its
+    width from the left and of its height from the top. The ray to the point meets the screen there."""
+    low, side, high = (world_of(c) for c in CORNERS[screen])
+    eye = world_of((EYE[0] + shift, EYE[1], EYE[2]))
+    across, up = minus(side, low), minus(high, side)
+    normal = unit(cross(across, up))
+    way = minus(x, eye)
+    share = dot(minus(low, eye), normal) / dot(way, normal)
+    place = minus(tuple(e + share * w for e, w in zip(eye, way)), low)
+    return dot(place, across) / dot(across, across), 1 - dot(place, up) / dot(up, up)
+
+
+def write_files(folder):
+    bodies = ",".join(
+        f"""{{"name": "{name}", "kind": "rigid", "shape": {{"type": "ellipsoid",
+             "radii": [{radius}, {radius}, {radius}]}}, "density": 1000,
+             "pose": {{"position": {list(center)}}}}}"""
+        for name, (center, radius) in BALLS.items())
+    (folder / "scene.json").write_text(
+        f"""{{"tetwarp_scene": 1, "time_step": 0.01, "duration": 1, "gravity": [0, 0, 0],
+              "bodies": [{bodies}]}}""", encoding="ascii")
+    screens = ",".join(
+        f"""{{"name": "{name}", "lower_left": {list(c[0])}, "lower_right": {list(c[1])},
+             "upper_right": {list(c[2])}, "window": [{PIXELS * n}, 0, {PIXELS}, {PIXELS}]
+             {', "host": "another", "stereo": "side_by_side"' if name == "right" else ""}}}"""
+        for n, (name, c) in enumerate(CORNERS.items()))
+    (folder / "room.json").write_text(
+        f"""{{"tetwarp_room": 1, "observer": {list(EYE)}, "focus": {FOCUS}, "wait": 5,
+              "eye_separation": {EYE_SEPARATION}, "screens": [{screens}]}}""", encoding="ascii")
+
+
+def is_color(name, pixel):
+    r, g, b = pixel
+    return {"orange": r > 25 and r > 1.5 * g and g > 1.4 * b,
+            "blue": b > 20 and b > 1.25 * g and b > 2 * r,
+            "green": g > 17 and g > 1.2 * b and g > 1.6 * r}[name]
+
+
+def check_blob(rows, name, expected, columns=(0, PIXELS)):
+    """The middle of the pixels of a ball is where its center is seen, to half a pixel."""
+    found = [(x, y) for y, row in enumerate(rows) for x in range(*columns) if is_color(name, row[x])]
+    if len(found) < 20:
+        fail(f"{name}: {len(found)} pixels")
+    middle = [sum(axis) / len(found) + 0.5 for axis in zip(*found)]
+    if max(abs(a - b) for a, b in zip(middle, expected)) > 0.5:
+        fail(f"{name}: at {middle}, expected {expected}")
+
+
+def check_pictures(folder):
+    shown = {name: pixels_of(folder / f"room_{name}.png")[1] for name in CORNERS}
+    x, y = seen("front", BALLS["blue"][0])
+    check_blob(shown["front"], "blue", (PIXELS * x, PIXELS * y))
+    for half, side in enumerate((-1, 1)):
+        x, y = seen("right", BALLS["green"][0], side * EYE_SEPARATION / 2)
+        width = PIXELS / 2
+        check_blob(shown["right"], "green", (width * (half + x), PIXELS * y),
+                   (int(half * width), int((half + 1) * width)))
+    edges = [[row[column] for row in shown[name]] for name, column in (("left", -1), ("front", 0))]
+    covered = [[is_color("orange", pixel) for pixel in edge] for edge in edges]
+    both = [n for n in range(PIXELS) if covered[0][n] and covered[1][n]]
+    if len(both) < 30 or sum(a != b for a, b in zip(*covered)) > 2:
+        fail(f"edge: {sum(covered[0])} and {sum(covered[1])} pixels, {len(both)} in common")
+    difference = sum(abs(a - b) for n in both for a, b in zip(edges[0][n], edges[1][n]))
+    if difference / (3 * len(both)) > 4:
+        fail(f"edge: the pictures differ by {difference / (3 * len(both)):.1f} of 255")
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def wait_for_window(name, environment):
+    """A screen gets its name when it has shown something."""
+    subprocess.run(["xdotool", "search", "--sync", "--onlyvisible", "--name", name],
+                   env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
+
+
+def end(process, what):
+    process.send_signal(signal.SIGTERM)
+    status = process.wait(SECONDS)
+    if status != 0:
+        fail(f"{what}: status {status}: {process.stderr.read()}")
+
+
+def start(command, words, environment, folder):
+    return subprocess.Popen([command, "view", *words], env=environment, cwd=folder,
+                            stderr=subprocess.PIPE, text=True)
+
+
+def check_room(command, environment, folder):
+    subprocess.run([command, "view", "--make-keys", "room"], cwd=folder, timeout=SECONDS, check=True)
+    if (folder / "room.key").stat().st_mode & 0o77:
+        fail("keys: others may read them")
+    address = f"tcp://127.0.0.1:{free_port()}"
+    camera = ",".join(str(x) for x in CAMERA_EYE + CAMERA_TARGET)
+    master = start(command, ["scene.json", "--screens", "room.json", "--address", address, "--key",
+                             "room.key", "--paused", "--size", "200,150", "--camera", camera,
+                             "--screenshot", "room.png"], environment, folder)
+    join = ["--join", address, "--screen", "right", "--key", "room_screen.key", "--screenshot",
+            "room_right.png"]
+    late = []
+    try:
+        for n in range(2):
+            late.append(start(command, join, environment, folder))
+            wait_for_window("tetwarp screen: right", environment)
+            if n == 0:
+                late[0].kill()
+                late[0].wait(SECONDS)
+        wait_for_window("tetwarp screen: front", environment)
+        wait_for_window("tetwarp screen: left", environment)
+        end(late[1], "right")
+        end(master, "master")
+    finally:
+        for process in (*late, master):
+            process.kill()
+    check_pictures(folder)
+
+
+def check_refusals(command, environment, folder):
+    """Wrong input is one line and no process stays."""
+    for words, expected in (
+            (["scene.json", "--screens", "nowhere.json"], "nowhere.json"),
+            (["scene.json", "--screens", "room.json", "--address", "tcp://*:5611"], "--make-keys"),
+            (["scene.json", "--join", "tcp://127.0.0.1:1", "--screen", "a"], "SCENE"),
+            (["--join", "tcp://127.0.0.1:1"], "--screen"),
+            (["--join", "nowhere", "--screen", "a"], "address 'nowhere'"),
+            ([], "SCENE")):
+        done = subprocess.run([command, "view", *words], env=environment, cwd=folder,
+                              timeout=SECONDS, capture_output=True, text=True)
+        if done.returncode == 0 or expected not in done.stderr:
+            fail(f"{words}: status {done.returncode}, {done.stderr!r}")
+
+
+def main():
+    command = str(Path(sys.argv[1]).resolve())
+    missing = [tool for tool in ("Xvfb", "xdotool") if not shutil.which(tool)]
+    if missing:
+        print(f"skipped: {' and '.join(missing)} not found; apt install xvfb xdotool")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="tetwarp-screens-") as name:
+        folder = Path(name)
+        write_files(folder)
+        with Display() as environment:
+            check_refusals(command, environment, folder)
+            check_room(command, environment, folder)
+
+
+if __name__ == "__main__":
+    main()
