@@ -11,10 +11,15 @@
 namespace tetwarp::view {
 
 Image picture_of(vtkRenderWindow* window) {
+  const bool swaps = window->GetSwapBuffers() != 0;
+  window->SwapBuffersOff();
+  window->Render();
   vtkNew<vtkWindowToImageFilter> reader;
   reader->SetInput(window);
   reader->ReadFrontBufferOff();
+  reader->ShouldRerenderOff();
   reader->Update();
+  window->SetSwapBuffers(swaps);
   vtkImageData* const picture = reader->GetOutput();
   int size[3];
   picture->GetDimensions(size);
