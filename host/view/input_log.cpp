@@ -13,7 +13,7 @@
 namespace tetwarp::view {
 namespace {
 constexpr const char* first_line = "tetwarp input 1";
-constexpr const char* const words[] = {"grab", "move", "release", "restart"};
+constexpr const char* const words[] = {"grab", "move", "release", "restart", "carry"};
 
 template <class Number>
 std::string number(Number value) {
@@ -66,7 +66,7 @@ InputEvent event_of(LineReader& line, std::int64_t tick, const std::string& word
   std::size_t kind = 0;
   while (kind < std::size(words) && word != words[kind]) ++kind;
   if (kind == std::size(words)) {
-    throw std::invalid_argument("'" + word + "' is not grab, move, release, restart or end");
+    throw std::invalid_argument("'" + word + "' is not grab, move, release, restart, carry or end");
   }
   event.kind = static_cast<InputKind>(kind);
   if (event.kind == InputKind::grab) {
@@ -76,6 +76,9 @@ InputEvent event_of(LineReader& line, std::int64_t tick, const std::string& word
     event.handle.stiffness = line.number<double>();
     event.handle.damping = line.number<double>();
   } else if (event.kind == InputKind::move) {
+    event.displacement = line.point();
+  } else if (event.kind == InputKind::carry) {
+    event.handle.body = line.word();
     event.displacement = line.point();
   }
   return event;
@@ -110,6 +113,8 @@ std::string text_of(const InputLog& log) {
               number(handle.stiffness) + " " + number(handle.damping);
     } else if (event.kind == InputKind::move) {
       text += numbers(event.displacement);
+    } else if (event.kind == InputKind::carry) {
+      text += " " + event.handle.body + numbers(event.displacement);
     }
     text += "\n";
   }

@@ -13,21 +13,23 @@ enum class InputKind {
   grab,     ///< holds a body at a point
   move,     ///< the held point is pulled to another place
   release,  ///< lets go
-  restart   ///< the state of the start
+  restart,  ///< the state of the start
+  carry     ///< a scripted body goes to another place
 };
 
 /// Acts before a step.
 struct InputEvent {
   std::int64_t tick = 0;  ///< steps made before it; goes on counting after a restart
   InputKind kind = InputKind::release;
-  PointHandle handle = {};  ///< of a grab; its name is not kept
-  Point3 displacement{};    ///< of a move: of the anchors from where they started [m]
+  PointHandle handle = {};  ///< of a grab; its name is not kept. Of a carry: the body alone
+  Point3 displacement{};    ///< of a move or carry: of the anchors or the body from where they
+                            ///< started [m]
 
   bool operator==(const InputEvent&) const = default;
 };
 
 struct InputLog {
-  std::string scene;               ///< file or name
+  std::string scene;               ///< ViewOptions::scene_words()
   std::vector<InputEvent> events;  ///< ticks do not fall
   std::int64_t ticks = 0;          ///< steps made in all
 };

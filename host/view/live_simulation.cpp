@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <exception>
 #include <tetwarp/names.hpp>
 #include <utility>
@@ -13,6 +14,7 @@
 namespace tetwarp::view {
 namespace {
 constexpr const char* handle_name = "mouse";
+constexpr const char* replay_message = "a replay takes no input";
 // Times the size of a body: what the mouse holds of an elastic body or cloth.
 constexpr double grab_share = 0.08;
 
@@ -28,6 +30,13 @@ SimulateOptions simulate_options(const ViewOptions& of) {
   return options;
 }
 
+/// Of this thread [s].
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 double mean_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
@@ -41,10 +50,11 @@ LiveSimulation::LiveSimulation(Scene scene,
     : options_(options),
       simulator_(std::move(scene), simulate_options(options)),
       volumes_(rest_volumes(simulator_), options, simulator_.backend()),
+      carrier_(simulator_),
       start_(simulator_.checkpoint()),
       replay_(std::move(replay)),
       is_paused_(options.paused) {
-  log_.scene = options.scene();
+  log_.scene = options.scene_words();
   if (replay_) last_tick_ = replay_->ticks;
   if (options.steps) last_tick_ = *options.steps;
 }
@@ -163,21 +173,30 @@ void LiveSimulation::follow(const Order& order) {
       event.kind = InputKind::restart;
       break;
     case OrderKind::grab:
+      if (carrier_.may_carry(order.body)) {
+        note_change();
+        message_ = replay_ ? replay_message : carrier_.take_up(order.body, order.point);
+        return;
+      }
       event.kind = InputKind::grab;
       event.handle = handle_at(order.body, order.point);
       break;
     case OrderKind::pull:
+      carrier_.pull(order.point);
+      note_change();
       if (!held_) return;
       event.kind = InputKind::move;
       event.displacement = minus(order.point, held_->start);
       break;
     case OrderKind::release:
+      carrier_.let_go();
+      note_change();
       if (!held_) return;
       event.kind = InputKind::release;
       break;
   }
   if (replay_) {
-    message_ = "a replay takes no input";
+    message_ = replay_message;
     note_change();
     return;
   }
@@ -192,18 +211,20 @@ void LiveSimulation::act(const InputEvent& event) {
       PointHandle handle = event.handle;
       handle.name = handle_name;
       simulator_.add_handle(handle);
-      const std::vector<Body>& bodies = simulator_.scene().bodies;
-      const auto body = std::ranges::find(bodies, handle.body, &Body::name) - bodies.begin();
-      held_ = Held{static_cast<std::size_t>(body), handle.center, handle.center, handle.stiffness};
+      held_ = Held{body_of(handle.body), handle.center, handle.center, handle.stiffness};
     } else if (event.kind == InputKind::move) {
       simulator_.move_handle(handle_name, event.displacement);
       if (held_) held_->target = plus(held_->start, event.displacement);
+    } else if (event.kind == InputKind::carry) {
+      simulator_.move_script(event.handle.body, event.displacement, {0, 0, 0});
+      carrier_.note({body_of(event.handle.body), event.displacement});
     } else if (event.kind == InputKind::release) {
       simulator_.release_handle(handle_name);
       held_.reset();
     } else {
       simulator_.restore(start_);
       held_.reset();
+      carrier_.reset();
       has_failed_ = false;
     }
     log_.events.push_back(event);
@@ -221,11 +242,24 @@ void LiveSimulation::repeat_input() {
   }
 }
 
+std::size_t LiveSimulation::body_of(const std::string& name) const {
+  const std::vector<Body>& bodies = simulator_.scene().bodies;
+  const auto found = std::ranges::find(bodies, name, &Body::name);
+  if (found == bodies.end()) throw std::invalid_argument("there is no body '" + name + "'");
+  return static_cast<std::size_t>(found - bodies.begin());
+}
+
 void LiveSimulation::take_step() {
+  if (const auto way = carrier_.next()) {
+    const std::string& name = simulator_.scene().bodies[way->body].name;
+    act({tick_, InputKind::carry, {.body = name}, way->displacement});
+  }
   note_change();
   single_steps_ = std::max<std::int64_t>(single_steps_ - 1, 0);
   try {
+    const double start = processor_seconds();
     simulator_.step();
+    seconds_.steps += processor_seconds() - start;
     count_step();
   } catch (const std::exception& error) {
     message_ = error.what();
@@ -275,6 +309,7 @@ void LiveSimulation::publish() {
     frame.points[b] = simulator_.surface_positions(b);
   }
   if (warps_) {
+    const double start = processor_seconds();
     volumes_.warp(
         [this](std::size_t volume) {
           const std::size_t body = volumes_.sources()[volume].body.body;
@@ -282,6 +317,8 @@ void LiveSimulation::publish() {
                              simulator_.positions(body)};
         },
         frame.volumes);
+    seconds_.warps += processor_seconds() - start;
+    ++seconds_.warp_count;
   } else {
     frame.volumes.clear();
   }
@@ -299,7 +336,8 @@ void LiveSimulation::fill(LiveFrame& frame) {
   const double part = simulator_.scene().time_step /
                       static_cast<double>(std::max<std::int64_t>(record.substeps, 1));
   frame.contacts.clear();
-  for (const ContactPoint& contact : simulator_.contacts()) {
+  const std::vector<ContactPoint> contacts = simulator_.contacts();
+  for (const ContactPoint& contact : contacts) {
     frame.contacts.push_back({contact.position, times(1 / part, contact.impulse)});
   }
   frame.grab.reset();
@@ -308,6 +346,7 @@ void LiveSimulation::fill(LiveFrame& frame) {
     frame.grab =
         GrabView{minus(held_->target, times(1 / held_->stiffness, force)), held_->target, force};
   }
+  if (!frame.grab) frame.grab = carrier_.view(contacts, part);
   frame.is_paused = is_paused_;
   frame.is_converged = record.converged;
   frame.is_last = tick_ >= last_tick_;

@@ -15,6 +15,7 @@
 
 #include <tetwarp/simulate.hpp>
 
+#include "host/view/body_carrier.hpp"
 #include "host/view/input_log.hpp"
 #include "host/view/live_frame.hpp"
 #include "host/view/live_volumes.hpp"
@@ -22,6 +23,12 @@
 #include "host/view/view_options.hpp"
 
 namespace tetwarp::view {
+
+/// Processor time of the thread, without those that help it.
+struct LiveSeconds {
+  double steps = 0, warps = 0;
+  std::int64_t warp_count = 0;
+};
 
 enum class OrderKind { pause, step, restart, grab, pull, release, volumes_on, volumes_off };
 
@@ -60,6 +67,7 @@ class LiveSimulation {
 
   /// After end(): the steps made, and what the user did before them.
   const InputLog& log() const { return log_; }
+  const LiveSeconds& seconds() const { return seconds_; }
   std::vector<std::byte> checkpoint() const { return simulator_.checkpoint(); }
 
  private:
@@ -80,6 +88,7 @@ class LiveSimulation {
   void repeat_input();
   bool may_step() const;
   void take_step();
+  std::size_t body_of(const std::string& name) const;
   void wait_for_time();
   void count_step();
   void fill(LiveFrame& frame);
@@ -91,11 +100,13 @@ class LiveSimulation {
   ViewOptions options_;
   Simulator simulator_;
   LiveVolumes volumes_;
+  BodyCarrier carrier_;
   std::vector<std::byte> start_;
   std::optional<InputLog> replay_;
   std::size_t next_event_ = 0;  ///< of the replay
   std::int64_t last_tick_ = std::numeric_limits<std::int64_t>::max();
   InputLog log_;
+  LiveSeconds seconds_;
 
   std::mutex mutex_;
   std::condition_variable wake_;

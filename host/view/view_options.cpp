@@ -30,6 +30,7 @@ void visit_members(Options& of, const Visit& visit) {
   visit("voxels", of.voxels);
   visit("grab_radius", of.grab_radius);
   visit("grab_stiffness", of.grab_stiffness);
+  visit("ball", of.ball);
   visit("screenshot", of.screenshot);
   visit("record", of.record);
   visit("replay", of.replay);
@@ -40,6 +41,7 @@ void visit_members(Options& of, const Visit& visit) {
   visit("join", of.join);
   visit("screen", of.screen);
   visit("ends_with_master", of.ends_with_master);
+  visit("timing", of.timing);
   visit("tracker", of.tracker);
   visit("make_keys", of.make_keys);
 }
@@ -61,7 +63,8 @@ void write(std::string& text, std::int64_t value) {
 void write(std::string& text, double value) {
   write_number(text, value);
 }
-void write(std::string& text, const std::array<double, 6>& values) {
+template <std::size_t count>
+void write(std::string& text, const std::array<double, count>& values) {
   for (std::size_t n = 0; n < values.size(); ++n) {
     if (n > 0) text += ',';
     write(text, values[n]);
@@ -93,7 +96,8 @@ bool read(std::string_view text, std::int64_t& value) {
 bool read(std::string_view text, double& value) {
   return read_number(text, value);
 }
-bool read(std::string_view text, std::array<double, 6>& values) {
+template <std::size_t count>
+bool read(std::string_view text, std::array<double, count>& values) {
   for (double& value : values) {
     const std::size_t comma = std::min(text.find(','), text.size());
     if (!read(text.substr(0, comma), value)) return false;
@@ -107,6 +111,13 @@ bool read(std::string_view text, std::optional<T>& value) {
 }
 
 }  // namespace
+
+std::string ViewOptions::scene_words() const {
+  std::string words = scene();
+  if (ball) words += " --ball ";
+  write(words, ball);
+  return words;
+}
 
 std::vector<std::string> words_of(const ViewOptions& options) {
   std::vector<std::string> defaults, words;

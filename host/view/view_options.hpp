@@ -27,12 +27,14 @@ struct ViewOptions {
   std::int64_t voxels = 2'000'000;                     ///< at most, of all warped volumes
   std::optional<double> grab_radius;                   ///< [m]
   std::optional<double> grab_stiffness;                ///< [N/m]
+  std::optional<std::array<double, 4>> ball;           ///< center and radius of a ball to push with
   std::string screenshot, record, replay, checkpoint;  ///< files; empty: none
   std::string screens;            ///< room file or name of one that ships; empty: none
   std::string address;            ///< that a master listens at, in place of the room's
   std::string key;                ///< file of keys; empty: none
   std::string join, screen;       ///< address of the master to follow, name of the screen to show
   bool ends_with_master = false;  ///< of a screen that the master started
+  bool timing = false;            ///< says at the end what took how long
   bool tracker = false;           ///< sends poses of the head instead of showing a screen
   std::string make_keys;          ///< name of key files to write, instead of all else
 
@@ -40,6 +42,8 @@ struct ViewOptions {
 
   /// The scene, for messages.
   const std::string& scene() const { return scene_file.empty() ? scene_name : scene_file; }
+  /// The scene with what options add to it, as a record of input names it.
+  std::string scene_words() const;
 };
 
 /// One word per member that is not its default: name=value.

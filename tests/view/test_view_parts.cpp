@@ -2,6 +2,7 @@
 /// Live windows without a window: hand-over between threads, input and its repetition, picking.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>
@@ -11,10 +12,12 @@
 #include <variant>
 #include <vector>
 
+#include "host/base/point3.hpp"
 #include "host/view/input_log.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/live_volumes.hpp"
 #include "host/view/pick.hpp"
+#include "host/view/ray_quality.hpp"
 #include "host/view/scene_look.hpp"
 #include "host/view/triple_buffer.hpp"
 #include "host/view/view_options.hpp"
@@ -92,7 +95,11 @@ InputLog some_input() {
                             .damping = 0.7}},
                 {.tick = 3, .kind = InputKind::move, .displacement = {0.2, 0, -1}},
                 {.tick = 9, .kind = InputKind::release},
-                {.tick = 12, .kind = InputKind::restart}};
+                {.tick = 12, .kind = InputKind::restart},
+                {.tick = 13,
+                 .kind = InputKind::carry,
+                 .handle = {.body = "ball"},
+                 .displacement = {0.25, 1e-9, 0}}};
   log.ticks = 20;
   return log;
 }
@@ -209,6 +216,78 @@ TEST(LiveSimulation, StepsOnOrderAndPullsWhatIsGrabbed) {
   EXPECT_FALSE(again.grab);
   simulation.end();
   EXPECT_EQ(simulation.log().events.size(), 4u);
+}
+
+/// Cost of a picture by its rays, in units of the finest one.
+double cost_of(const RaySpacing& rays) {
+  return 1 / (rays.step * rays.pixels * rays.pixels);
+}
+
+/// For any machine the quality settles where pictures are in time, or at the coarsest, and is not
+/// coarser than needed by more than two levels.
+TEST(RayQuality, SettlesWhereThePictureIsInTime) {
+  for (const bool is_software : {false, true}) {
+    for (double finest = 0.001; finest < 20; finest *= 1.3) {
+      RayQuality quality(is_software);
+      for (int n = 0; n < 100; ++n) quality.drew(finest * cost_of(quality.moving()));
+      const RaySpacing settled = quality.moving();
+      for (int n = 0; n < 20; ++n) {
+        quality.drew(finest * cost_of(quality.moving()));
+        EXPECT_EQ(quality.moving(), settled) << finest;
+      }
+      const double seconds = finest * cost_of(settled);
+      EXPECT_TRUE(seconds <= 1.0 / 15 || settled == (RaySpacing{6, 6})) << finest;
+      EXPECT_TRUE(seconds >= 0.2 / 15 || settled == RaySpacing{}) << finest;
+      EXPECT_LE(quality.resting().pixels, settled.pixels);
+    }
+  }
+}
+
+/// The mouse takes a scripted ball into a block: the ball follows at a limited speed, pushes, and
+/// stays where it was let go; a replay has the same bits.
+TEST(LiveSimulation, CarriesAScriptedBodyThatPushes) {
+  Scene scene = live_scene();
+  scene.bodies[1].kind = BodyKind::scripted;
+  scene.bodies[1].rigid = {};
+  scene.gravity = {0, 0, 0};
+  ViewOptions options;
+  options.paused = true;
+  LiveSimulation simulation(scene, options, {});
+  simulation.begin();
+  const double top = bounds_of(frame_at(simulation, 0).points[0]).high[2];
+  simulation.give({.kind = OrderKind::grab, .body = 1, .point = {0, 0, 0.2}});
+  simulation.give({.kind = OrderKind::pull, .point = {0, 0, 0.16}});
+  std::int64_t tick = 0;
+  double below = 0.2;
+  for (; tick < 10; ++tick) {
+    simulation.give({.kind = OrderKind::step});
+    const LiveFrame& frame = frame_at(simulation, tick + 1);
+    ASSERT_TRUE(frame.grab);
+    // Five sizes, the diagonals of the box of the ball, a second.
+    EXPECT_LE(below - frame.grab->point[2], 5 * 0.06 * std::sqrt(3) * 0.01 + 1e-12);
+    below = frame.grab->point[2];
+  }
+  EXPECT_NEAR(below, 0.16, 1e-12);
+  const LiveFrame pushed = simulation.frames().front();
+  EXPECT_GT(pushed.grab->force[2], 0);
+  double under = 0;  // the top of the block, below the ball
+  for (const Point3& x : pushed.points[0]) {
+    if (std::hypot(x[0], x[1]) < 0.01) under = std::max(under, x[2]);
+  }
+  EXPECT_LT(under, top - 0.015);
+  simulation.give({.kind = OrderKind::release});
+  simulation.give({.kind = OrderKind::step});
+  EXPECT_FALSE(frame_at(simulation, tick + 1).grab);
+  EXPECT_NEAR(bounds_of(simulation.frames().front().points[1]).low[2], 0.1, 1e-3);
+  simulation.end();
+
+  options.paused = false;
+  LiveSimulation repeated(scene, options, simulation.log());
+  repeated.begin();
+  while (!frame_at(repeated, 0).is_last) {
+  }
+  repeated.end();
+  EXPECT_EQ(repeated.checkpoint(), simulation.checkpoint());
 }
 
 TEST(LiveSimulation, RepeatsItsInputBitForBit) {

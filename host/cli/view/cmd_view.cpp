@@ -102,6 +102,7 @@ void declare_simulation(CLI::App& app, view::ViewOptions& options) {
                  "wall time of a step: solves end in time with what they have [no limit]")
       ->check(above_zero())
       ->type_name("S");
+  app.add_flag("--timing", options.timing, "print at the end what steps and pictures took");
   app.add_flag("--untangle", options.untangle,
                "shrink elastic bodies and cloth that intersect others at the start, and let them "
                "grow back within 0.2 s");
@@ -122,6 +123,12 @@ void declare_input(CLI::App& app, view::ViewOptions& options) {
                  "of the spring to the mouse, N/m [from mass and stiffness of the body]")
       ->check(above_zero())
       ->type_name("K");
+  app.add_option_function<std::array<double, 4>>(
+         "--ball", [&options](const std::array<double, 4>& ball) { options.ball = ball; },
+         "center and radius of a ball to push with: the mouse carries it [none]")
+      ->delimiter(',')
+      ->check(finite_number())
+      ->type_name("X,Y,Z,R");
   app.add_option("--record", options.record, "write what the mouse did, by step")
       ->type_name("FILE");
   app.add_option("--replay", options.replay, "repeat it: same results")->type_name("FILE");
@@ -159,6 +166,9 @@ void check_view(const view::ViewOptions& options) {
     throw CLI::ValidationError("--max-step-seconds",
                                "steps that end by the clock cannot be repeated; leave it out with "
                                "--record and --replay");
+  }
+  if (options.ball && !((*options.ball)[3] > 0)) {
+    throw CLI::ValidationError("--ball", "the radius, its last number, is above 0");
   }
   const bool shows_scene = !options.scene().empty();
   if (shows_scene == (!options.join.empty() || !options.make_keys.empty())) {

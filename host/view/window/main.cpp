@@ -2,10 +2,12 @@
 /// The program tetwarp-view, which `tetwarp view` starts: tetwarp-view NAME=VALUE...
 #include <X11/Xlib.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <optional>
 #include <stdexcept>
@@ -39,17 +41,25 @@ void check_display() {
                            "; start it from a desktop, through ssh -X, or within xvfb-run");
 }
 
+/// The scene, with the ball to push with.
 Scene load(const ViewOptions& options) {
-  if (options.scene_file.empty()) {
-    return parse_scene(scene_text(options.scene_name), options.scene_name);
+  Scene scene = options.scene_file.empty()
+                    ? parse_scene(scene_text(options.scene_name), options.scene_name)
+                    : read_scene(options.scene_file);
+  if (options.ball) {
+    const auto& [x, y, z, radius] = *options.ball;
+    Body ball{.name = "ball", .kind = BodyKind::scripted};
+    ball.geometry = Shape{EllipsoidShape{{radius, radius, radius}}};
+    ball.pose.position = {x, y, z};
+    scene.bodies.push_back(std::move(ball));
   }
-  return read_scene(options.scene_file);
+  return scene;
 }
 
 std::optional<InputLog> replay_of(const ViewOptions& options) {
   if (options.replay.empty()) return std::nullopt;
   InputLog log = read_input_log(options.replay);
-  if (log.scene != options.scene()) {
+  if (log.scene != options.scene_words()) {
     throw IoError(options.replay, "", "was recorded with scene " + log.scene + "; view that one");
   }
   return log;
@@ -61,6 +71,20 @@ void write_results(LiveSimulation& simulation, const ViewOptions& options) {
   const std::vector<std::byte> bytes = simulation.checkpoint();
   write_finished_file(options.checkpoint,
                       {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// Drawing is all that the other threads do if the simulation has one.
+void print_timing(const LiveSimulation& simulation, std::int64_t pictures, std::clock_t start) {
+  const LiveSeconds& spent = simulation.seconds();
+  const auto each = [](double seconds, std::int64_t count) {
+    return 1000 * seconds / static_cast<double>(std::max<std::int64_t>(count, 1));
+  };
+  const double all = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  std::printf(
+      "processor time: %lld steps of %.2f ms, %lld warps of %.2f ms, %lld pictures of %.2f ms\n",
+      static_cast<long long>(simulation.log().ticks), each(spent.steps, simulation.log().ticks),
+      static_cast<long long>(spent.warp_count), each(spent.warps, spent.warp_count),
+      static_cast<long long>(pictures), each(all - spent.steps - spent.warps, pictures));
 }
 
 volatile std::sig_atomic_t signal_number = 0;
@@ -90,12 +114,14 @@ void show_scene(const ViewOptions& options) {
   ViewWindow window(scene, *simulation, options, screens ? &*screens : nullptr);
   take_signals();
   if (screens) screens->wait_for_screens();
+  const std::clock_t start = std::clock();
   simulation->begin();
   window.run(signal_number);
   const std::string problem = window.failure();
   if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   simulation->end();
   write_results(*simulation, options);
+  if (options.timing) print_timing(*simulation, window.picture_count(), start);
   if (!problem.empty()) throw std::runtime_error(options.scene() + ": " + problem);
 }
 

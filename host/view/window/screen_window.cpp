@@ -93,8 +93,7 @@ void ScreenWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   }
   link_.send(LeaveMessage{});
   if (!options_.screenshot.empty() && actors_) {
-    if (volumes_) volumes_->set_coarse(false);
-    if (volumes_) volumes_->show(frame_);
+    volumes_->set_rays({});
     write_png(options_.screenshot, picture_of(window_));
   }
 }
@@ -156,9 +155,7 @@ void ScreenWindow::set_up_window(const Screen& screen) {
                              ": this display has no stereo of two buffers; use side_by_side or "
                              "anaglyph");
   }
-  const std::string_view renderer = window_->ReportCapabilities();
-  is_software_ = renderer.find("llvmpipe") != std::string_view::npos ||
-                 renderer.find("softpipe") != std::string_view::npos;
+  rays_ = RayQuality(is_software(window_));
   events_->Initialize();
   is_open_ = true;
 }
@@ -199,9 +196,12 @@ void ScreenWindow::draw(const FrameMessage& message) {
   if (screen_.stereo == Stereo::right) eyes_[0] = eyes_[1];
   place_ = message.place;
   set_light(place_);
+  volumes_->set_rays(rays_.moving());
   window_->SwapBuffersOff();
+  const Stopwatch watch;
   window_->Render();
   window_->WaitForCompletion();
+  rays_.drew(watch.seconds());
   drawn_ = message.frame;
   link_.send(ReadyMessage{message.frame});
 }
@@ -230,7 +230,6 @@ void ScreenWindow::show_state(const FrameMessage& message) {
   if (!actors_) {
     actors_.emplace(scene_, frame_, renderer_);
     volumes_.emplace(scene_, shared_.preset, renderer_);
-    volumes_->set_coarse(is_software_);
   }
   if (is_new) {
     actors_->show(frame_);

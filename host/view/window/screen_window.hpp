@@ -54,7 +54,8 @@ class ScreenWindow {
 
   std::uint64_t session_ = 0;
   Screen screen_;
-  bool is_open_ = false, has_shown_ = false, is_over_ = false, is_software_ = false;
+  bool is_open_ = false, has_shown_ = false, is_over_ = false;
+  RayQuality rays_;
   std::uint64_t drawn_ = 0;  ///< frame in the back buffer; 0: none
   std::array<Point3, 2> eyes_{};
   RoomPlace place_;

@@ -25,6 +25,7 @@ constexpr unsigned long timer_interval = 15;  // [ms]
 // Ray casting is given up after so many pictures one after the other that took longer than this.
 constexpr double slow_seconds = 1.0;
 constexpr int most_slow_frames = 5;
+constexpr double resting_seconds = 0.4;  // until rays become finer
 constexpr double window_pixels = 400;  // by which the mouse moves the window by its width
 
 constexpr const char* help_text =
@@ -93,10 +94,9 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   actors_.emplace(scene_, frame, renderer_);
   volumes_.emplace(scene_, options_.preset, renderer_);
   window_->Render();
-  const std::string_view renderer = window_->ReportCapabilities();
-  is_software_ = renderer.find("llvmpipe") != std::string_view::npos ||
-                 renderer.find("softpipe") != std::string_view::npos;
-  volumes_->set_coarse(is_software_);
+  rays_ = RayQuality(is_software(window_));
+  volumes_->set_rays(rays_.moving());
+  set_up_drawing();
   set_look(VolumeLook::rays);
   actors_->show(frame);
   volumes_->show(frame);
@@ -139,25 +139,67 @@ void ViewWindow::on_timer() {
     }
     draw();
   }
+  if (resting_.seconds() > resting_seconds) refine();
   const LiveFrame& frame = simulation_.frames().front();
   const bool is_limited = options_.steps.has_value() || !options_.replay.empty();
   const bool is_over = frame.is_last || (frame.has_failed && is_limited);
   if (is_over || *is_interrupted_ != 0) events_->TerminateApp();
 }
 
-void ViewWindow::draw() {
-  const Stopwatch watch;
+/// Pictures are timed whoever draws them; when the camera begins to move, rays become coarse.
+void ViewWindow::set_up_drawing() {
+  vtkNew<vtkCallbackCommand> begin, end, move;
+  for (vtkCallbackCommand* const command : {begin.Get(), end.Get(), move.Get()}) {
+    command->SetClientData(this);
+  }
+  begin->SetCallback([](vtkObject*, unsigned long, void* window, void*) {
+    static_cast<ViewWindow*>(window)->drawing_ = Stopwatch();
+  });
+  end->SetCallback([](vtkObject*, unsigned long, void* window, void*) {
+    auto* const self = static_cast<ViewWindow*>(window);
+    self->note_picture(self->drawing_.seconds());
+  });
+  move->SetCallback([](vtkObject*, unsigned long, void* window, void*) {
+    auto* const self = static_cast<ViewWindow*>(window);
+    self->is_refined_ = false;
+    self->volumes_->set_rays(self->rays_.moving());
+  });
+  window_->AddObserver(vtkCommand::StartEvent, begin);
+  window_->AddObserver(vtkCommand::EndEvent, end);
+  style_->AddObserver(vtkCommand::StartInteractionEvent, move);
+}
+
+void ViewWindow::note_picture(double seconds) {
   std::erase_if(drawn_, [](const Stopwatch& since) { return since.seconds() > 1; });
+  drawn_.emplace_back();
+  ++picture_count_;
+  if (is_refined_) return;
+  resting_ = Stopwatch();
+  if (look_ != VolumeLook::rays || scene_.volumes.empty()) return;
+  rays_.drew(seconds);
+  volumes_->set_rays(rays_.moving());
+  fall_back(seconds);
+}
+
+/// Once, when nothing has moved for a while.
+void ViewWindow::refine() {
+  if (is_refined_ || look_ != VolumeLook::rays || scene_.volumes.empty() || rays_.resting() == rays_.moving()) return;
+  is_refined_ = true;
+  volumes_->set_rays(rays_.resting());
+  renderer_->ResetCameraClippingRange();
+  window_->Render();
+}
+
+void ViewWindow::draw() {
+  is_refined_ = false;
+  volumes_->set_rays(rays_.moving());
   text_->SetInput(overlay().c_str());
   renderer_->ResetCameraClippingRange();
   window_->Render();
-  drawn_.emplace_back();
-  fall_back(watch.seconds());
 }
 
 /// Shows slices where rays take too long.
 void ViewWindow::fall_back(double seconds) {
-  if (look_ != VolumeLook::rays || scene_.volumes.empty()) return;
   slow_frames_ = seconds > slow_seconds ? slow_frames_ + 1 : 0;
   if (slow_frames_ < most_slow_frames) return;
   set_look(VolumeLook::slices);
@@ -179,7 +221,7 @@ std::string ViewWindow::overlay() {
   } else if (!frame.is_converged) {
     text += "\nabove its tolerance";
   }
-  if (frame.grab) text += fmt::format("\npull {:.3g} N", norm(frame.grab->force));
+  if (frame.grab) text += fmt::format("\nforce {:.3g} N", norm(frame.grab->force));
   if (screens_ != nullptr) text += "\n" + screens_->status();
   if (!frame.message.empty()) text += "\n" + frame.message;
   if (!note_.empty()) text += "\n" + note_;
@@ -260,10 +302,9 @@ bool ViewWindow::turn_window(int x, int y) {
 }
 
 void ViewWindow::save_picture(const std::string& path) {
-  volumes_->set_coarse(false);
-  volumes_->show(simulation_.frames().front());
+  is_refined_ = true;
+  volumes_->set_rays({});
   const Image picture = picture_of(window_);
-  volumes_->set_coarse(is_software_);
   write_png(path, picture);
 }
 

@@ -2,6 +2,7 @@
 /// ViewWindow: the window of a live simulation.
 #pragma once
 #include <csignal>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ class ViewWindow {
   bool has_picture() const { return volumes_.has_value(); }
   /// Writes what is shown. @pre has_picture() @throws IoError
   void save_picture(const std::string& path);
+  std::int64_t picture_count() const { return picture_count_; }
   /// What ended the simulation, or empty.
   std::string failure();
 
@@ -47,6 +49,9 @@ class ViewWindow {
   void set_up_mouse();
   void on_timer();
   void draw();
+  void set_up_drawing();
+  void note_picture(double seconds);
+  void refine();
   void tell_screens();
   void press(const std::string& key);
   bool grab(int x, int y);
@@ -70,7 +75,12 @@ class ViewWindow {
   std::optional<SceneActors> actors_;
   std::optional<VolumeActors> volumes_;
   VolumeLook look_ = VolumeLook::rays;
-  bool shows_contacts_ = true, is_software_ = false;
+  bool shows_contacts_ = true;
+  bool is_refined_ = false;  ///< more finely drawn since nothing moves
+  RayQuality rays_;
+  Stopwatch drawing_;        ///< since a picture was begun
+  Stopwatch resting_;        ///< since the last picture of something that moved
+  std::int64_t picture_count_ = 0;
   double level_ = 0, width_ = 1;  ///< of the window of volumes
   double grab_depth_ = 0;         ///< of the point that is held, as on the display
   int slow_frames_ = 0;           ///< drawn one after the other

@@ -13,8 +13,6 @@
 namespace tetwarp::view {
 namespace {
 constexpr double opacity_lengths = 200;  // in the diagonal of a volume, for ColorPoint::opacity
-// Lengths of a ray between samples [voxels], and pixels between rays.
-constexpr double fine_step = 1, coarse_step = 4, coarse_pixels = 3;
 constexpr int gray_levels = 256, clear_levels = 8;  // of slices; the darkest are clear
 }  // namespace
 
@@ -86,9 +84,7 @@ void VolumeActors::show(LiveFrame& frame) {
                               1);
       drawn.samples->Modified();
       drawn.image->Modified();
-      drawn.mapper->SetSampleDistance(
-          static_cast<float>((is_coarse_ ? coarse_step : fine_step) * grid.spacing[0]));
-      drawn.mapper->SetImageSampleDistance(static_cast<float>(is_coarse_ ? coarse_pixels : 1));
+      space_rays(drawn);
       drawn.rays->GetProperty()->SetScalarOpacityUnitDistance(drawn.image->GetLength() /
                                                               opacity_lengths);
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -97,6 +93,18 @@ void VolumeActors::show(LiveFrame& frame) {
     }
     show_look(drawn);
   }
+}
+
+void VolumeActors::set_rays(const RaySpacing& spacing) {
+  rays_ = spacing;
+  for (Drawn& drawn : drawn_) {
+    if (drawn.has_samples) space_rays(drawn);
+  }
+}
+
+void VolumeActors::space_rays(Drawn& drawn) {
+  drawn.mapper->SetSampleDistance(static_cast<float>(rays_.step * drawn.image->GetSpacing()[0]));
+  drawn.mapper->SetImageSampleDistance(static_cast<float>(rays_.pixels));
 }
 
 void VolumeActors::set_look(VolumeLook look) {

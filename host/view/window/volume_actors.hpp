@@ -17,6 +17,7 @@
 #include <vtkVolume.h>
 
 #include "host/view/live_frame.hpp"
+#include "host/view/ray_quality.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/volume_colors.hpp"
 
@@ -31,8 +32,7 @@ class VolumeActors {
   /// @param frame  its samples are drawn where they are, until the next call
   void show(LiveFrame& frame);
   void set_look(VolumeLook look);
-  /// Coarse rays are for interaction without a graphics processor.
-  void set_coarse(bool is_coarse) { is_coarse_ = is_coarse; }
+  void set_rays(const RaySpacing& spacing);
   /// As VolumeColors::set_window().
   void set_window(double level, double width);
 
@@ -52,11 +52,12 @@ class VolumeActors {
     bool has_samples = false;
   };
   void color(Drawn& drawn);
+  void space_rays(Drawn& drawn);
   void show_look(Drawn& drawn);
 
   std::deque<Drawn> drawn_;  ///< [volumes]
   VolumeLook look_ = VolumeLook::rays;
-  bool is_coarse_ = false;
+  RaySpacing rays_;
 };
 
 }  // namespace tetwarp::view

@@ -7,8 +7,15 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <cstring>
+#include <string_view>
 
 namespace tetwarp::view {
+
+bool is_software(vtkRenderWindow* window) {
+  const std::string_view renderer = window->ReportCapabilities();
+  return renderer.find("llvmpipe") != std::string_view::npos ||
+         renderer.find("softpipe") != std::string_view::npos;
+}
 
 Image picture_of(vtkRenderWindow* window) {
   const bool swaps = window->GetSwapBuffers() != 0;

@@ -8,6 +8,9 @@
 
 namespace tetwarp::view {
 
+/// Whether a window that has drawn something is drawn without a graphics processor.
+bool is_software(vtkRenderWindow* window);
+
 /// Draws the window again and reads it.
 Image picture_of(vtkRenderWindow* window);
 

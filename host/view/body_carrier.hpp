@@ -1,0 +1,55 @@
+/// @file body_carrier.hpp
+/// BodyCarrier: moves a scripted body with the mouse.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/simulate.hpp>
+
+#include "host/view/live_frame.hpp"
+
+namespace tetwarp::view {
+
+/// The body follows the mouse by at most some of its sizes a second, so that it pushes what is in
+/// its way.
+class BodyCarrier {
+ public:
+  /// @param simulator  kept by the caller
+  explicit BodyCarrier(const Simulator& simulator);
+
+  bool may_carry(std::size_t body) const;
+  /// @returns why it cannot be carried, or empty
+  std::string take_up(std::size_t body, const Point3& point);
+  /// @param point  where the point that was taken is to be [world]
+  void pull(const Point3& point);
+  void let_go() { held_.reset(); }
+  /// All bodies are where they were at the start.
+  void reset();
+
+  struct Way {
+    std::size_t body = 0;
+    Point3 displacement{};  ///< from the start [m]
+  };
+  /// Where the body in the hand goes in the next step; nothing: it stays.
+  std::optional<Way> next() const;
+  void note(const Way& way) { displacements_[way.body] = way.displacement; }
+  /// @param contacts  of the last step
+  /// @param seconds   over which their impulses acted
+  std::optional<GrabView> view(const std::vector<ContactPoint>& contacts, double seconds) const;
+
+ private:
+  struct Held {
+    std::size_t body;
+    Point3 start;   ///< where it was taken
+    Point3 home;    ///< its displacement then
+    Point3 target;  ///< the displacement to come to
+  };
+
+  const Simulator& simulator_;
+  std::vector<Point3> displacements_;  ///< [bodies]
+  std::optional<Held> held_;
+};
+
+}  // namespace tetwarp::view
