@@ -86,7 +86,7 @@ else()
 endif()
 add_executable(tetwarp_view)
 tetwarp_sources(tetwarp_view host/view/window
-  mouse_style.cpp scene_actors.cpp ${tetwarp_screen_sources} surface_actor.cpp view_window.cpp
+  cut_plane.cpp mouse_style.cpp scene_actors.cpp ${tetwarp_screen_sources} surface_actor.cpp view_window.cpp
   volume_actors.cpp window_picture.cpp
   ALONE main.cpp)
 set_target_properties(tetwarp_view PROPERTIES

@@ -19,8 +19,8 @@ bool BodyCarrier::may_carry(std::size_t body) const {
 }
 
 std::string BodyCarrier::take_up(std::size_t body, const Point3& point) {
-  const bool has_script = !std::holds_alternative<std::monostate>(
-      simulator_.scene().bodies[body].motion);
+  const bool has_script =
+      !std::holds_alternative<std::monostate>(simulator_.scene().bodies[body].motion);
   if (has_script) return simulator_.scene().bodies[body].name + " follows its script";
   const Point3& home = displacements_[body];
   held_ = Held{body, point, home, home};
@@ -56,8 +56,8 @@ std::optional<GrabView> BodyCarrier::view(const std::vector<ContactPoint>& conta
     if (contact.body_b == held_->body) force = minus(force, times(1 / seconds, contact.impulse));
   }
   const Point3 moved = minus(displacements_[held_->body], held_->home);
-  return GrabView{plus(held_->start, moved),
-                  plus(held_->start, minus(held_->target, held_->home)), force};
+  return GrabView{plus(held_->start, moved), plus(held_->start, minus(held_->target, held_->home)),
+                  force};
 }
 
 }  // namespace tetwarp::view

@@ -28,7 +28,7 @@ struct ContactArrow {
 /// A point of a body that the mouse holds.
 struct GrabView {
   Point3 point{}, target{};  ///< [m]
-  Point3 force{};            ///< of all handles on the body, or of all contacts if it is carried [N]
+  Point3 force{};  ///< of all handles on the body, or of all contacts if it is carried [N]
 };
 
 struct LiveFrame {

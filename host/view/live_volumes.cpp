@@ -73,6 +73,19 @@ Grid grid_around(const std::vector<Point3>& points,
   return grid;
 }
 
+std::optional<double> value_at(const VolumeFrame& frame, const VolumeBody& range, const Point3& x) {
+  const Grid& grid = frame.grid;
+  std::int64_t voxel = 0;
+  for (std::size_t d = 3; d-- > 0;) {
+    const double place = std::round((x[d] - grid.origin[d]) / grid.spacing[d]);
+    if (!(place >= 0 && place < static_cast<double>(grid.dims[d]))) return std::nullopt;
+    voxel = voxel * grid.dims[d] + static_cast<std::int64_t>(place);
+  }
+  const double share =
+      static_cast<double>(frame.samples[static_cast<std::size_t>(voxel)]) / largest_sample;
+  return range.low + share * (range.high - range.low);
+}
+
 std::vector<RestVolume> rest_volumes(const Simulator& simulator) {
   std::vector<RestVolume> sources;
   const std::vector<Body>& bodies = simulator.scene().bodies;

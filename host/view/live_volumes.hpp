@@ -63,6 +63,9 @@ class LiveVolumes {
 /// The volumes of all bodies that are made of one and have a mesh.
 std::vector<RestVolume> rest_volumes(const Simulator& simulator);
 
+/// The value of the voxel at a point; nothing outside of the volume.
+std::optional<double> value_at(const VolumeFrame& frame, const VolumeBody& range, const Point3& x);
+
 /// A grid along the world's axes around points, with a margin of a tenth of their box on all sides.
 /// @param least_spacing  [m]
 /// @param most_voxels    about

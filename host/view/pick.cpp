@@ -26,7 +26,8 @@ std::optional<double> meet(const std::array<Point3, 3>& corner,
 std::optional<Pick> pick(const std::vector<std::vector<Point3>>& points,
                          const std::vector<Triangles>& triangles,
                          const Point3& origin,
-                         const Point3& direction) {
+                         const Point3& direction,
+                         const std::optional<Cut>& cut) {
   std::optional<Pick> first;
   for (std::size_t body = 0; body < triangles.size() && body < points.size(); ++body) {
     for (const auto& triangle : triangles[body]) {
@@ -36,7 +37,9 @@ std::optional<Pick> pick(const std::vector<std::vector<Point3>>& points,
       }
       const auto distance = meet(corner, origin, direction);
       if (!distance || (first && *distance >= first->distance)) continue;
-      first = Pick{body, plus(origin, times(*distance, direction)), *distance};
+      const Point3 point = plus(origin, times(*distance, direction));
+      if (cut && dot(minus(point, cut->point), cut->normal) > 0) continue;
+      first = Pick{body, point, *distance};
     }
   }
   return first;

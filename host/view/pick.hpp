@@ -18,14 +18,23 @@ struct Pick {
   double distance = 0;  ///< along the ray, in lengths of its direction
 };
 
+/// A plane that hides what is on the side of its normal.
+struct Cut {
+  Point3 point{}, normal{0, 0, 1};
+
+  bool operator==(const Cut&) const = default;
+};
+
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 
-/// Where a ray meets the surfaces of bodies first; either side of a triangle counts.
+/// Where a ray meets the surfaces of bodies first; either side of a triangle counts, what is cut
+/// away does not.
 /// @param points     [bodies] of the surfaces, world
 /// @param triangles  [bodies]
 std::optional<Pick> pick(const std::vector<std::vector<Point3>>& points,
                          const std::vector<Triangles>& triangles,
                          const Point3& origin,
-                         const Point3& direction);
+                         const Point3& direction,
+                         const std::optional<Cut>& cut = {});
 
 }  // namespace tetwarp::view

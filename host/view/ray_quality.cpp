@@ -10,8 +10,8 @@ namespace {
 constexpr std::array<RaySpacing, 7> levels{
     {{1, 1}, {2, 1}, {2, 1.5}, {3, 2}, {4, 3}, {5, 4}, {6, 6}}};
 constexpr std::size_t software_level = 4, resting_level = 2;
-constexpr double goal = 1.0 / 15;      // [s]
-constexpr double quick = 0.3 * goal;   // the next finer level takes at most 3 times as long
+constexpr double goal = 1.0 / 15;     // [s]
+constexpr double quick = 0.3 * goal;  // the next finer level takes at most 3 times as long
 constexpr int most_quick = 5;
 }  // namespace
 

@@ -18,6 +18,7 @@ ViewScene view_scene_of(const LiveSimulation& simulation, const ViewOptions& opt
   scene.max_step_seconds = options.max_step_seconds;
   Bounds bounds;
   for (std::size_t b = 0; b < simulator.scene().bodies.size(); ++b) {
+    scene.bodies.push_back(simulator.scene().bodies[b].name);
     scene.triangles.push_back(simulator.body(b).surface.triangles);
     for (const Point3& x : simulator.surface_positions(b)) bounds.include(x);
   }

@@ -15,6 +15,7 @@ namespace tetwarp::view {
 
 struct ViewScene {
   std::string name;
+  std::vector<std::string> bodies;   ///< names
   std::vector<Triangles> triangles;  ///< [bodies] of the surfaces
   std::vector<Obstacle> obstacles;
   std::vector<VolumeBody> volumes;

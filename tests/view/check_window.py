@@ -124,13 +124,14 @@ def check_pull(command, environment, folder, body):
                 f"""xdotool search --sync --onlyvisible --name tetwarp:.scene.json windowmove %1 0 0
                     windowfocus --sync %1 mousemove {x} {y} mousedown 1
                     mousemove {x + 40} {y - 10} key s mousemove {x + 60} {y - 20}
-                    key s key s mouseup 1 key s key s keydown q""".split(),
+                    key s key s mouseup 1 key s key s key x key i key comma key x keydown q""".split(),
                 env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
             status = window.wait(SECONDS)
         finally:
             window.kill()
-        if status != 0:
-            fail(f"pull: status {status}: {window.stderr.read()}")
+        problems = window.stderr.read()
+        if status != 0 or problems:
+            fail(f"pull: status {status}: {problems}")
     text = (folder / "input.txt").read_text(encoding="ascii")
     for word in (" grab block ", " move ", " release\n", "5 end\n"):
         if word not in text:

@@ -45,7 +45,13 @@ TEST(ScreenMessage, IsTheSameAfterItsBytes) {
   EXPECT_EQ(welcomed.screen.window, welcome.screen.window);
   EXPECT_TRUE(welcomed.screen.is_fullscreen);
   EXPECT_EQ(welcomed.scene, welcome.scene);
-  FrameMessage frame{5, 6, head, 0.06, {{0, 1, 0}, {4, 5, 6}, {}}, {1, false, 0.5, 2}, {}};
+  FrameMessage frame{5,
+                     6,
+                     head,
+                     0.06,
+                     {{0, 1, 0}, {4, 5, 6}, {}},
+                     {1, false, 0.5, 2, Cut{{1, 2, 3}, {0, 0.6, 0.8}}},
+                     {}};
   frame.state = {std::byte{3}};
   const auto framed = again<FrameMessage>(ToScreen(frame), to_screen);
   EXPECT_EQ(framed.frame, 6u);
@@ -73,6 +79,9 @@ TEST(ScreenMessage, NumbersOutOfRangeAreRefused) {
   is_refused(bad);
   bad = frame;
   bad.look.volumes = 3;
+  is_refused(bad);
+  bad = frame;
+  bad.look.cut = Cut{{0, 0, 0}, {0, 0, 2}};
   is_refused(bad);
   bad = frame;
   bad.eye_separation = -1;

@@ -153,6 +153,40 @@ TEST(Pick, FindsTheNearestTriangleFromEitherSide) {
   EXPECT_FALSE(pick(points, triangles, {0.2, 0.3, 5}, {1, 0, 0}));  // along the triangles
 }
 
+TEST(Pick, SkipsWhatIsCutAway) {
+  const std::vector<std::vector<Point3>> points{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                                {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+  const std::vector<Triangles> triangles{{{0, 1, 2}}, {{0, 1, 2}}};
+  const auto body_below = [&](double height) {
+    const auto found = pick(points, triangles, {0.2, 0.3, 5}, {0, 0, -2}, Cut{{0, 0, height}});
+    return found ? static_cast<int>(found->body) : -1;
+  };
+  EXPECT_EQ(body_below(1.5), 1);
+  EXPECT_EQ(body_below(0.5), 0);
+  EXPECT_EQ(body_below(-0.5), -1);
+}
+
+TEST(ValueAt, IsThatOfTheNearestVoxel) {
+  VolumeFrame frame;
+  frame.grid = {.dims = {3, 4, 2}, .origin = {1, 2, 3}, .spacing = {0.5, 0.5, 0.5}};
+  for (int v = 0; v < 24; ++v) frame.samples.push_back(static_cast<std::int16_t>(1000 * v));
+  const VolumeBody range{0, -1000, 2000};
+  for (std::int64_t k = 0; k < 2; ++k) {
+    for (std::int64_t j = 0; j < 4; ++j) {
+      for (std::int64_t i = 0; i < 3; ++i) {
+        const Point3 center = frame.grid.world_of(
+            {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+        const double sample = 1000.0 * static_cast<double>(i + 3 * (j + 4 * k));
+        const auto value = value_at(frame, range, plus(center, {0.2, -0.2, 0.1}));
+        ASSERT_TRUE(value);
+        EXPECT_NEAR(*value, -1000 + 3000 * sample / largest_sample, 1e-9);
+      }
+    }
+  }
+  EXPECT_FALSE(value_at(frame, range, {0.7, 2, 3}));
+  EXPECT_FALSE(value_at(frame, range, {1, 2, 3.8}));
+}
+
 TEST(GridAround, HoldsThePointsAndTheLimit) {
   const std::vector<Point3> points{{-1, 0, 2}, {3, 0.5, 2.25}};
   for (const std::int64_t most : {100'000, 1'000'000}) {

@@ -51,6 +51,8 @@ void write(ByteWriter& to, const FrameMessage& message) {
   to.add(static_cast<std::uint8_t>(message.look.shows_contacts));
   to.add(message.look.level);
   to.add(message.look.width);
+  to.add(static_cast<std::uint8_t>(message.look.cut.has_value()));
+  to.add(message.look.cut.value_or(Cut{}));
   to.add_list(message.state);
 }
 void write(ByteWriter& to, const SwapMessage& message) {
@@ -107,6 +109,9 @@ FrameMessage read_frame(ByteReader& from) {
   message.look.shows_contacts = from.get_bool();
   message.look.level = from.get<double>();
   message.look.width = from.get<double>();
+  const bool is_cut = from.get_bool();
+  const auto cut = from.get<Cut>();
+  if (is_cut) message.look.cut = cut;
   message.state = from.get_list<std::byte>();
   const RoomPlace& place = message.place;
   require(is_in_world(place.observer) && is_in_world(place.origin) &&
@@ -114,7 +119,8 @@ FrameMessage read_frame(ByteReader& from) {
           "no place of the room");
   require(message.eye_separation >= 0 && message.eye_separation <= 1 && message.look.volumes <= 2 &&
               std::abs(message.look.level) < 1e6 && message.look.width > 1e-6 &&
-              message.look.width < 1e6,
+              message.look.width < 1e6 && is_in_world(cut.point) &&
+              std::abs(norm(cut.normal) - 1) < 1e-6,
           "no look");
   return message;
 }

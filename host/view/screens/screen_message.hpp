@@ -2,10 +2,12 @@
 /// Messages between the master, which simulates, and the processes of screens.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
 
+#include "host/view/pick.hpp"
 #include "host/view/screens/message_bytes.hpp"
 #include "host/view/screens/room.hpp"
 
@@ -43,6 +45,7 @@ struct ScreenLook {
   std::uint8_t volumes = 0;  ///< rays, slices or surfaces, as VolumeLook
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeColors::set_window()
+  std::optional<Cut> cut = {};
 
   bool operator==(const ScreenLook&) const = default;
 };

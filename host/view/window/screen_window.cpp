@@ -242,6 +242,7 @@ void ScreenWindow::show_state(const FrameMessage& message) {
   }
   volumes_->set_look(look);
   volumes_->set_window(message.look.level, message.look.width);
+  cut_.set(message.look.cut, renderer_);
 }
 
 /// The same light on all screens, from where the master's camera is.

@@ -18,6 +18,7 @@
 #include "host/view/live_volumes.hpp"
 #include "host/view/screens/shared_state.hpp"
 #include "host/view/view_scene.hpp"
+#include "host/view/window/cut_plane.hpp"
 #include "host/view/window/scene_actors.hpp"
 #include "host/view/window/volume_actors.hpp"
 
@@ -67,6 +68,7 @@ class ScreenWindow {
   std::optional<LiveVolumes> warps_;
   std::optional<SceneActors> actors_;
   std::optional<VolumeActors> volumes_;
+  CutPlane cut_;
 };
 
 }  // namespace tetwarp::view

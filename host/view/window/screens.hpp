@@ -4,6 +4,7 @@
 #pragma once
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "host/view/live_simulation.hpp"
@@ -18,6 +19,7 @@ struct MasterView {
   VolumeLook volumes = VolumeLook::rays;
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeActors::set_window()
+  std::optional<Cut> cut;
 };
 
 /// The master's end: serves all screens, and starts those of this machine.

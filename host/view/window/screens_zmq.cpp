@@ -175,7 +175,7 @@ void MasterScreens::set_view(const MasterView& view) {
   const RoomPlace place =
       place_of_camera(impl_->room(), view.camera.eye, view.camera.target, view.camera.up);
   impl_->server().set_view(place, {static_cast<std::uint8_t>(view.volumes), view.shows_contacts,
-                                   view.level, view.width});
+                                   view.level, view.width, view.cut});
 }
 
 std::string MasterScreens::status() const {

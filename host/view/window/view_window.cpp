@@ -26,12 +26,13 @@ constexpr unsigned long timer_interval = 15;  // [ms]
 constexpr double slow_seconds = 1.0;
 constexpr int most_slow_frames = 5;
 constexpr double resting_seconds = 0.4;  // until rays become finer
-constexpr double window_pixels = 400;  // by which the mouse moves the window by its width
+constexpr double cut_step = 0.02;        // of the size of the scene
+constexpr double window_pixels = 400;    // by which the mouse moves the window by its width
 
 constexpr const char* help_text =
-    "left: pull the body, else turn   Shift+left: pan   wheel: zoom   right: window of volumes\n"
-    "space pause   s step   r restart   c contacts   v volume, slices, surfaces   p picture   h "
-    "help   q quit";
+    "left: pull the body, else turn   Shift+left: pan\nwheel: zoom   right: window of volumes\n"
+    "space pause   s step   r restart   c contacts   p picture\n"
+    "v volume, slices, surfaces   i probe   x cut plane   , . move it\nh help   q quit";
 
 void style_text(vtkTextActor* text, int size) {
   text->GetTextProperty()->SetFontSize(size);
@@ -126,6 +127,7 @@ void ViewWindow::tell_screens() {
   view.shows_contacts = shows_contacts_;
   view.level = level_;
   view.width = width_;
+  view.cut = cut_;
   screens_->set_view(view);
 }
 
@@ -183,7 +185,9 @@ void ViewWindow::note_picture(double seconds) {
 
 /// Once, when nothing has moved for a while.
 void ViewWindow::refine() {
-  if (is_refined_ || look_ != VolumeLook::rays || scene_.volumes.empty() || rays_.resting() == rays_.moving()) return;
+  if (is_refined_ || look_ != VolumeLook::rays || scene_.volumes.empty() ||
+      rays_.resting() == rays_.moving())
+    return;
   is_refined_ = true;
   volumes_->set_rays(rays_.resting());
   renderer_->ResetCameraClippingRange();
@@ -245,6 +249,9 @@ void ViewWindow::press(const std::string& key) {
   if (key == "space") simulation_.give({.kind = OrderKind::pause});
   if (key == "s") simulation_.give({.kind = OrderKind::step});
   if (key == "r") simulation_.give({.kind = OrderKind::restart});
+  if (key == "i") probe();
+  if (key == "x") turn_cut();
+  if (key == "comma" || key == "period") move_cut(key == "comma" ? cut_step : -cut_step);
   if (key == "c") actors_->show_contacts(shows_contacts_ = !shows_contacts_);
   if (key == "v") {
     set_look(look_ == VolumeLook::rays     ? VolumeLook::slices
@@ -275,10 +282,53 @@ Point3 ViewWindow::world_of(double x, double y, double depth) {
   return {world[0] / world[3], world[1] / world[3], world[2] / world[3]};
 }
 
-bool ViewWindow::grab(int x, int y) {
+/// @param ray  out, from the eye
+std::optional<Pick> ViewWindow::pick_at(int x, int y, Point3& ray) {
   const Point3 near = world_of(x, y, 0);
-  const auto found = pick(simulation_.frames().front().points, scene_.triangles, near,
-                          minus(world_of(x, y, 1), near));
+  ray = minus(world_of(x, y, 1), near);
+  return pick(simulation_.frames().front().points, scene_.triangles, near, ray, cut_);
+}
+
+/// Notes what is under the pointer: body, place, and a value a voxel below the surface.
+void ViewWindow::probe() {
+  const int* const place = events_->GetEventPosition();
+  Point3 ray{};
+  const auto found = pick_at(place[0], place[1], ray);
+  if (!found) return note("nothing is there");
+  const Point3& x = found->point;
+  std::string text =
+      fmt::format("{} at {:.4g}, {:.4g}, {:.4g} m", scene_.bodies[found->body], x[0], x[1], x[2]);
+  const std::vector<VolumeFrame>& volumes = simulation_.frames().front().volumes;
+  for (std::size_t v = 0; v < volumes.size(); ++v) {
+    if (scene_.volumes[v].body != found->body) continue;
+    const Point3 below = plus(x, times(volumes[v].grid.spacing[0], unit(ray)));
+    const auto value = value_at(volumes[v], scene_.volumes[v], below);
+    if (value) text += fmt::format(": {:.4g}", *value);
+  }
+  note(text);
+}
+
+/// Hides what is before the middle of the scene, or shows all again.
+void ViewWindow::turn_cut() {
+  if (cut_) {
+    cut_.reset();
+  } else {
+    Point3 away{};
+    renderer_->GetActiveCamera()->GetViewPlaneNormal(away.data());
+    cut_ = Cut{scene_.center, unit(away)};
+  }
+  cut_plane_.set(cut_, renderer_);
+}
+
+void ViewWindow::move_cut(double share) {
+  if (!cut_) return;
+  cut_->point = plus(cut_->point, times(share * scene_.size, cut_->normal));
+  cut_plane_.set(cut_, renderer_);
+}
+
+bool ViewWindow::grab(int x, int y) {
+  Point3 ray{};
+  const auto found = pick_at(x, y, ray);
   if (!found) return false;
   renderer_->SetWorldPoint(found->point[0], found->point[1], found->point[2], 1);
   renderer_->WorldToDisplay();

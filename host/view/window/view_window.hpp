@@ -16,6 +16,7 @@
 #include "host/base/stopwatch.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_scene.hpp"
+#include "host/view/window/cut_plane.hpp"
 #include "host/view/window/mouse_style.hpp"
 #include "host/view/window/scene_actors.hpp"
 #include "host/view/window/screens.hpp"
@@ -54,7 +55,11 @@ class ViewWindow {
   void refine();
   void tell_screens();
   void press(const std::string& key);
+  std::optional<Pick> pick_at(int x, int y, Point3& ray);
   bool grab(int x, int y);
+  void probe();
+  void turn_cut();
+  void move_cut(double share);
   void pull(int x, int y);
   bool turn_window(int x, int y);
   void set_look(VolumeLook look);
@@ -78,14 +83,16 @@ class ViewWindow {
   bool shows_contacts_ = true;
   bool is_refined_ = false;  ///< more finely drawn since nothing moves
   RayQuality rays_;
-  Stopwatch drawing_;        ///< since a picture was begun
-  Stopwatch resting_;        ///< since the last picture of something that moved
+  Stopwatch drawing_;  ///< since a picture was begun
+  Stopwatch resting_;  ///< since the last picture of something that moved
   std::int64_t picture_count_ = 0;
   double level_ = 0, width_ = 1;  ///< of the window of volumes
   double grab_depth_ = 0;         ///< of the point that is held, as on the display
   int slow_frames_ = 0;           ///< drawn one after the other
   int pictures_ = 0;
   std::string note_;
+  CutPlane cut_plane_;
+  std::optional<Cut> cut_;
   const volatile std::sig_atomic_t* is_interrupted_ = nullptr;
   std::vector<Stopwatch> drawn_;  ///< since each picture of the last second
 };

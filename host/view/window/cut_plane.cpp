@@ -1,0 +1,36 @@
+/// @file cut_plane.cpp
+/// Clipping planes of mappers.
+#include "host/view/window/cut_plane.hpp"
+
+#include <vtkAbstractVolumeMapper.h>
+#include <vtkActor.h>
+#include <vtkActorCollection.h>
+#include <vtkMapper.h>
+#include <vtkPlaneCollection.h>
+#include <vtkVolume.h>
+#include <vtkVolumeCollection.h>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp::view {
+
+void CutPlane::set(const std::optional<Cut>& cut, vtkRenderer* renderer) {
+  if (cut) {
+    plane_->SetOrigin(cut->point.data());
+    plane_->SetNormal(times(-1, cut->normal).data());
+  }
+  const auto set_on = [&](vtkAbstractMapper* mapper) {
+    vtkPlaneCollection* const planes = mapper->GetClippingPlanes();
+    const bool has_plane = planes != nullptr && planes->IsItemPresent(plane_) != 0;
+    if (has_plane && !cut) mapper->RemoveClippingPlane(plane_);
+    if (!has_plane && cut) mapper->AddClippingPlane(plane_);
+  };
+  vtkActorCollection* const actors = renderer->GetActors();
+  actors->InitTraversal();
+  while (vtkActor* const actor = actors->GetNextActor()) set_on(actor->GetMapper());
+  vtkVolumeCollection* const volumes = renderer->GetVolumes();
+  volumes->InitTraversal();
+  while (vtkVolume* const volume = volumes->GetNextVolume()) set_on(volume->GetMapper());
+}
+
+}  // namespace tetwarp::view
