@@ -62,6 +62,23 @@ std::string beside(const std::string& file, const std::string& word) {
   return path.parent_path() / (path.stem().string() + "_" + word + path.extension().string());
 }
 
+/// A line of a tracker.
+std::optional<HeadPose> head_of(const std::string& line) {
+  std::istringstream words(line);
+  std::vector<double> numbers;
+  for (double number = 0; words >> number;) numbers.push_back(number);
+  if (!words.eof() || (numbers.size() != 3 && numbers.size() != 7)) return std::nullopt;
+  HeadPose head;
+  std::copy_n(numbers.begin(), 3, head.position.begin());
+  if (numbers.size() == 3) return head;
+  std::copy_n(numbers.begin() + 3, 4, head.rotation.begin());
+  const auto& [w, x, y, z] = head.rotation;
+  const double size = std::sqrt(w * w + x * x + y * y + z * z);
+  if (!(size > 0)) return std::nullopt;
+  for (double& part : head.rotation) part /= size;
+  return head;
+}
+
 /// Strings as execve() takes them; they must outlive the list.
 std::vector<char*> pointers_of(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -80,13 +97,15 @@ pid_t start_screen(const ViewOptions& options, const std::string& display) {
   }
   if (!display.empty()) variables.push_back("DISPLAY=" + display);
   const std::vector<char*> arguments = pointers_of(words), environment = pointers_of(variables);
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe");
   const pid_t parent = getpid(), child = fork();
-  if (child < 0)
+  if (child < 0) {
     throw std::runtime_error("a screen cannot be started: " + std::string(strerror(errno)));
+  }
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(1);
-    execve("/proc/self/exe", arguments.data(), environment.data());
+    execve(program.c_str(), arguments.data(), environment.data());
     _exit(127);
   }
   return child;
@@ -198,19 +217,12 @@ void send_head(const ViewOptions& options) {
   ScreenLink link(options.join, keys_of(options, false));
   std::string line;
   for (std::int64_t number = 1; std::getline(std::cin, line); ++number) {
-    std::istringstream words(line);
-    HeadPose head;
-    auto& [w, x, y, z] = head.rotation;
-    words >> head.position[0] >> head.position[1] >> head.position[2];
-    const bool has_place = !words.fail();
-    if (!(words >> std::ws).eof()) words >> w >> x >> y >> z;
-    const double size = std::sqrt(w * w + x * x + y * y + z * z);
-    if (!has_place || words.fail() || !(words >> std::ws).eof() || !(size > 0)) {
+    const std::optional<HeadPose> head = head_of(line);
+    if (!head) {
       throw std::runtime_error("standard input: line " + std::to_string(number) +
                                " is not x y z or x y z qw qx qy qz");
     }
-    for (double& part : head.rotation) part /= size;
-    link.send(HeadMessage{head});
+    link.send(HeadMessage{*head});
     while (link.receive(0)) {
     }
   }
