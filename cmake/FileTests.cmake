@@ -5,6 +5,7 @@ if(NOT BUILD_SHARED_LIBS)
     SOURCES
     tests/io/test_io_arrays.cpp
     tests/io/test_io_axes.cpp
+    tests/io/test_dicom_stack.cpp
     tests/io/test_io_blocks.cpp
     tests/io/test_io_images.cpp
     tests/io/test_io_vtkhdf_volume.cpp
@@ -29,6 +30,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_mesh_child.cpp
     tests/io/test_left_out.cpp
     tests/io/test_surface_files.cpp
+    io/image/dicom_stack.cpp
     io/reader/surface_seams.cpp)
   # In place of tetwarp-read: ends as the tests want.
   add_executable(fake_reader tests/io/fake_reader.cpp)
@@ -72,6 +74,8 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_axes.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME images COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_images.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME dicom COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_dicom.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME transforms COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_transforms.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME walk COMMAND ${TETWARP_PYTHON3}
@@ -80,7 +84,7 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME film COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader axes images transforms walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  set_tests_properties(vtk_reader axes images dicom transforms walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES

@@ -103,6 +103,14 @@ bool is_exodus_name(const std::string& path) {
 
 std::vector<std::string> files_of(const std::string& path) {
   std::vector<std::string> files;
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    for (fs::directory_iterator at(path, error), end; !error && at != end; at.increment(error)) {
+      if (at->is_regular_file(error)) files.push_back(at->path().string());
+    }
+    std::ranges::sort(files);
+    return files;
+  }
   constexpr int depth = 2;
   if (!is_pattern(path)) {
     add_files(path, depth, files);

@@ -27,9 +27,10 @@ TEST(BadFormats, AreNamedWithARemedy) {
            {"a.nrrd", "NRRD0004\n", "a.nrrd: sizes: is missing in its header"},
            {"a.mha", "ObjectType = Image\n", "a.mha: ElementDataFile: is missing in its header"},
            {"a.mhd", "ObjectType = Image\n", "a.mhd: ElementDataFile: is missing in its header"},
-           {"a.dcm", std::string(128, '\0') + "DICM", "a.dcm: is a DICOM image, which is not read"},
+           {"a.dcm", "ACR-NEMA", "a.dcm: is a DICOM file without 'DICM' at byte 128, which is not"},
            {"a.mgz", "\x1f\x8b?", "a.mgz: is a file without a header of FreeSurfer"},
-           {"a.vti", "<?xml version=\"1.0\"?>\n", "a.vti: is a VTK image, which is not read; con"},
+           {"a.vti", "<?xml version=\"1.0\"?>\n", "a.vti: is a file without a VTK image (damaged"},
+           {"a.pvti", "<?xml version=\"1.0\"?>\n", "a.pvti: is a VTK image in several files, whic"},
            {"a.vtkhdf", "", "a.vtkhdf: is empty, expected a volume; copy it again"},
            {"a.dat", "a letter",
             "a.dat: is a file of unknown kind, expected a volume; the order"}}) {
@@ -40,6 +41,7 @@ TEST(BadFormats, AreNamedWithARemedy) {
            {"b.pvtu", "<?xml", "b.pvtu: is a mesh in several files, which is not read; convert it"},
            {"b.xdmf", "<?xml",
             "b.xdmf: is a XDMF mesh, which is not read; convert it to .vtu, .vtk"},
+           {"b.xmf", "<?xml", "b.xmf: is a XDMF mesh, which is not read; convert it to .vtu, .vtk"},
            {"b.inp", "*NODE\n", "b.inp: is a Abaqus mesh, which is not read; convert it to .vtu"},
            {"b.stl", "solid", "b.stl: is a surface, which is not read; make a mesh of tetrahedra"},
            {"b.vtkhdf", "", "b.vtkhdf: is empty, expected a mesh; copy it again"}}) {

@@ -1,5 +1,5 @@
 /// @file provenance.cpp
-/// Hashes inputs once, and writes one file per output.
+/// Hashes inputs once, writes one file per output, and compares such files with what is there.
 #include "host/cli/job/provenance.hpp"
 
 #include <fmt/chrono.h>
@@ -7,6 +7,7 @@
 
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <tetwarp/names.hpp>
@@ -54,12 +55,59 @@ Json given_as_json(const WarpArguments& arguments) {
   return options;
 }
 
+/// Options as given, but those that change no value.
+Json deciding_options(Json options) {
+  if (!options.is_object()) return {};
+  for (const char* name : {"output", "resume", "provenance", "quiet", "report", "threads", "memory",
+                           "strict", "dry-run", "no-skip", "device", "batch", "jobs"}) {
+    options.erase(name);
+  }
+  return options;
+}
+
+/// Of files: role, size and hash, without their place.
+Json contents_of(Json files) {
+  for (Json& file : files) {
+    if (file.is_object()) file.erase("file");
+  }
+  return files;
+}
+
+/// The content of OUT.json; null where there is none, or no JSON object.
+Json read_facts(const std::string& file) {
+  std::ifstream stream(file);
+  const Json facts = Json::parse(stream, nullptr, false);
+  return facts.is_object() ? facts : Json();
+}
+
 bool is_older(const std::string& file, const std::string& output) {
   std::error_code error;
   const auto written = fs::last_write_time(file, error);
   return error || written < fs::last_write_time(output);
 }
 }  // namespace
+
+ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& plan) {
+  bool is_missing = false;
+  Json inputs;
+  for (const std::string& output : plan.outputs()) {
+    const Json facts = read_facts(output + ".json");
+    std::error_code error;
+    if (facts.is_null() || !fs::is_regular_file(output, error)) {
+      is_missing = true;
+      continue;
+    }
+    if (inputs.is_null()) inputs = contents_of(facts_of_inputs(arguments));
+    const bool agrees =
+        facts.value("tetwarp", Json()) == TETWARP_VERSION &&
+        deciding_options(facts.value("options", Json::object())) ==
+            deciding_options(given_as_json(arguments)) &&
+        contents_of(facts.value("inputs", Json::array())) == inputs &&
+        contents_of({facts.value("output", Json())}) == contents_of({facts_of("output", output)});
+    if (!agrees) return ProvenanceState::contradicts;
+  }
+  return is_missing ? ProvenanceState::missing : ProvenanceState::agrees;
+}
 
 void write_provenance(const WarpArguments& arguments,
                       const JobPlan& plan,
