@@ -12,7 +12,7 @@ foreach(library gdcm gif gmsh mpi vtk)
 endforeach()
 add_library(tetwarp_io ${PROJECT_BINARY_DIR}/shipped_scenes.cpp)
 tetwarp_sources(tetwarp_io io/child
-  child_process.cpp foreign_image.cpp foreign_source.cpp reader_program.cpp)
+  child_process.cpp foreign_image.cpp foreign_source.cpp image_kind.cpp reader_program.cpp)
 tetwarp_sources(tetwarp_io io/fclib
   contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_left_out.cpp fclib_matrix.cpp
   fclib_numbers.cpp fclib_rows.cpp fclib_write.cpp)
@@ -62,6 +62,8 @@ list(APPEND tetwarp_exported tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png t
 # some damaged files. It is compiled with what it needs of tetwarp::io, since a shared library hides
 # its private code.
 add_library(tetwarp_reader STATIC)
+tetwarp_sources(tetwarp_reader io/child
+  image_kind.cpp)
 tetwarp_sources(tetwarp_reader io/files
   extension.cpp memory.cpp numbered_files.cpp)
 tetwarp_sources(tetwarp_reader io/image

@@ -1,11 +1,8 @@
 /// @file foreign_image.cpp
-/// Kinds by their first bytes, and images from messages of tetwarp-read.
+/// Images from messages of tetwarp-read.
 #include "io/child/foreign_image.hpp"
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <tetwarp/error.hpp>
 
@@ -13,14 +10,6 @@
 
 namespace tetwarp {
 namespace {
-/// The first bytes of a file, fewer where it ends before.
-std::string first_bytes(const std::string& path) {
-  std::array<char, 512> bytes{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), bytes.size());
-  return {bytes.data(), static_cast<std::size_t>(file.gcount())};
-}
-
 /// Checks what a reader has returned. Throws IoError.
 void check_image(const std::string& path, const ForeignImage& image) {
   try {
@@ -43,21 +32,6 @@ void check_image(const std::string& path, const ForeignImage& image) {
   }
 }
 }  // namespace
-
-bool is_dicom(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return true;
-  constexpr std::size_t preamble = 128;
-  const std::string bytes = first_bytes(path);
-  return bytes.size() >= preamble + 4 && bytes.compare(preamble, 4, "DICM") == 0;
-}
-
-bool is_foreign_image(const std::string& path) {
-  if (is_dicom(path)) return true;
-  const std::string bytes = first_bytes(path);
-  const std::size_t element = bytes.find("<VTKFile");
-  return element != std::string::npos && bytes.find("\"ImageData\"", element) != std::string::npos;
-}
 
 ForeignImage read_image_in_child(const std::string& path, const std::string& series) {
   ForeignImage image;

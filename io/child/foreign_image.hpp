@@ -44,12 +44,6 @@ void read_samples_in_child(const std::string& path,
                            const std::string& array,
                            const TakeSlice& take);
 
-/// Whether a file, or a folder, is one that the program reads as an image: by content.
-bool is_foreign_image(const std::string& path);
-
-/// Whether it is a DICOM file or a folder.
-bool is_dicom(const std::string& path);
-
 /// Sends or reads all members of an array.
 /// @param message  a MessageWriter or a MessageReader
 /// @param value    const for a MessageWriter

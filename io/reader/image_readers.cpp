@@ -2,6 +2,8 @@
 /// Choice of the library by the content of the file.
 #include "io/reader/image_readers.hpp"
 
+#include "io/child/image_kind.hpp"
+
 namespace tetwarp {
 
 ForeignImage read_foreign_image(const std::string& path, const std::string& series) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <tetwarp/io.hpp>
 
-#include "io/child/foreign_image.hpp"
+#include "io/child/image_kind.hpp"
 #include "io/files/extension.hpp"
 #include "io/files/numbered_files.hpp"
 #include "io/h5/h5.hpp"

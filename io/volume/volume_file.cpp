@@ -2,8 +2,8 @@
 /// Readers of volume files. The content of a file, not its name, decides its format.
 #include <tetwarp/io.hpp>
 
-#include "io/child/foreign_image.hpp"
 #include "io/child/foreign_source.hpp"
+#include "io/child/image_kind.hpp"
 #include "io/files/volume_source.hpp"
 #include "io/h5/h5.hpp"
 #include "io/h5/h5_attribute.hpp"
