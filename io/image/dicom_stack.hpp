@@ -15,12 +15,12 @@ struct DicomSlice {
   std::string series;  ///< SeriesInstanceUID
   std::string label;   ///< of the series, for messages: its modality and description
   int columns = 0, rows = 0;
-  int components = 1;               ///< SamplesPerPixel
-  int bits = 8;                     ///< BitsStored
-  bool is_signed = false;           ///< PixelRepresentation
-  std::vector<double> position;     ///< ImagePositionPatient, 3 numbers
-  std::vector<double> orientation;  ///< ImageOrientationPatient, 6 numbers
-  std::vector<double> spacing;      ///< PixelSpacing: between rows, between columns
+  int components = 1;                    ///< SamplesPerPixel
+  int bits = 8;                          ///< BitsStored
+  bool is_signed = false;                ///< PixelRepresentation
+  std::vector<double> position = {};     ///< ImagePositionPatient, 3 numbers
+  std::vector<double> orientation = {};  ///< ImageOrientationPatient, 6 numbers
+  std::vector<double> spacing = {};      ///< PixelSpacing: between rows, between columns
   double thickness = 0;  ///< SpacingBetweenSlices, else SliceThickness; of a single slice
   double slope = 1;      ///< value = slope * stored + intercept
   double intercept = 0;

@@ -27,6 +27,14 @@ namespace fs = std::filesystem;
 
 const std::string dicom_array = Volume{}.name;
 
+/// An error about a file of the folder that is read.
+[[noreturn]] void fail_in(const std::string& file,
+                          const std::string& attribute,
+                          const std::string& problem) {
+  const std::string name = fs::path(file).filename().string();
+  throw IoError(file, attribute.empty() ? name : name + " " + attribute, problem);
+}
+
 /// The header of a file, up to its pixels.
 class DicomHeader {
  public:
@@ -82,12 +90,12 @@ class DicomHeader {
 void check_pixels(const std::string& path, const DicomHeader& header) {
   const std::string colors = header.text(0x0028, 0x0004);
   if (!colors.starts_with("MONOCHROME") && colors != "RGB") {
-    throw IoError(path, "PhotometricInterpretation",
-                  "is '" + colors + "', expected MONOCHROME or RGB; convert it to RGB");
+    fail_in(path, "PhotometricInterpretation",
+            "is '" + colors + "', expected MONOCHROME or RGB; convert it to RGB");
   }
   if (header.has(0x0028, 0x3000)) {
-    throw IoError(path, "ModalityLUTSequence",
-                  "gives values by a table, expected a rescale slope; convert it to NIfTI");
+    fail_in(path, "ModalityLUTSequence",
+            "gives values by a table, expected a rescale slope; convert it to NIfTI");
   }
 }
 
@@ -99,10 +107,10 @@ std::vector<DicomSlice> dose_slices(const std::string& path,
   const std::vector<double> offsets = header.numbers(0x3004, 0x000c);
   if (std::ssize(offsets) != frames || first.orientation.size() != 6 ||
       first.position.size() != 3) {
-    throw IoError(path, "",
-                  "holds " + std::to_string(frames) +
-                      " frames, which are read of dose grids alone; convert it to NIfTI, for "
-                      "example by dcm2niix");
+    fail_in(path, "",
+            "holds " + std::to_string(frames) +
+                " frames, which are read of dose grids alone; convert it to NIfTI, for example by "
+                "dcm2niix");
   }
   const auto& o = first.orientation;
   const Point3 normal = cross({o[0], o[1], o[2]}, {o[3], o[4], o[5]});
@@ -183,6 +191,12 @@ class DicomPixels {
     const gdcm::Image& image = planes.GetOutput();
     format_ = image.GetPixelFormat();
     data_.resize(image.GetBufferLength());
+    const gdcm::DataSet& attributes = reader.GetFile().GetDataSet();
+    const gdcm::ByteValue* const stored =  // none of pixels that are packed
+        attributes.GetDataElement(gdcm::Tag(0x7fe0, 0x0010)).GetByteValue();
+    if (stored != nullptr && stored->GetLength() < data_.size()) {
+      fail("is shorter than rows and columns");
+    }
     if (!image.GetBuffer(data_.data())) fail("its pixels are damaged");
   }
 
@@ -211,7 +225,7 @@ class DicomPixels {
 
  private:
   [[noreturn]] void fail(const std::string& problem) const {
-    throw IoError(path_, "PixelData", problem + "; convert it to NIfTI, for example by dcm2niix");
+    fail_in(path_, "PixelData", problem + "; convert it to NIfTI, for example by dcm2niix");
   }
 
   template <class Stored>

@@ -162,7 +162,8 @@ TEST(Images, OfVtkHoldAllArraysOfAStep) {
                    arrays[a].data.data() + slice * static_cast<std::size_t>(k));
     }
   }
-  EXPECT_EQ(writer.finish().bytes, static_cast<std::int64_t>(bytes_of(path).size()));
+  const std::int64_t written = writer.finish().bytes;
+  EXPECT_EQ(written, std::ssize(bytes_of(path)));
   EXPECT_EQ(kind_of(path), FileKind::image);
   EXPECT_NE(message_of<IoError>([&] {
               write_image(folder / "b.vti", {arrays[0]}, 0, true);
