@@ -76,6 +76,8 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_images.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME dicom COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_dicom.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME labels COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_labels.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME transforms COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_transforms.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME walk COMMAND ${TETWARP_PYTHON3}
@@ -84,7 +86,7 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME film COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader axes images dicom transforms walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  set_tests_properties(vtk_reader axes images dicom labels transforms walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
