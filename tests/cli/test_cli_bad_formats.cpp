@@ -82,7 +82,7 @@ TEST(BadFormats, MeshesThatContradictThemselves) {
            {"g.vtk", with(good, "28.000000", huge.substr(1, huge.find(' ', 1) - 1)),
             "g.vtk: mesh: rest position of node 1 is over 2^40 voxels from the source grid; corr"},
            {"h.vtu", "<html>not found</html>", "h.vtu: holds no unstructured grid that VTK can"},
-           {"i.vtu", "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\"></VTKFile>", "i.vtu: is a DI"},
+           {"i.vtu", "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\"></VTKFile>", "i.vtu: is no im"},
            {"j.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n", "j.msh: does not begin with $MeshFormat, as G"},
            {"k.msh", with(gmsh, "2.2", "9.9"), "k.msh: Gmsh cannot read it: Unknown MSH file ver"},
            {"l.msh", nodes + "$Elements\n1\n1 4 2 1 1 1 2 3 99\n$EndElements\n",
