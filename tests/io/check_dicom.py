@@ -2,12 +2,12 @@
 
 Usage: check_dicom.py COMMAND
 
-Series are written here byte by byte, in all 48 orientations, with slices in any order of their names,
-rescaled values, tilted gantries, a dose grid and colors; the command turns them into NIfTI images, which
-are parsed and compared. Where SimpleITK is installed, it reads the same series, and the command reads
-series that SimpleITK packs by JPEG 2000 and by run lengths. Images that the command writes as .vti are
-read by VTK, and the command reads what VTK writes, packed and with arrays of bits. Series that make no
-volume must be refused in one line. Exits 77 when NumPy is missing, 1 when something differs.
+Series are written here byte by byte, in 10 of the 48 orientations (tests/io/test_dicom_stack.cpp has any), with
+slices in any order of their names, rescaled values, tilted gantries, a dose grid and colors; the command
+turns them into NIfTI images, which are parsed and compared. Where SimpleITK is installed, it reads the same series,
+and the command reads series that SimpleITK packs by JPEG 2000 and lossless JPEG. Images that the command writes
+as .vti are read by VTK, and the command reads what VTK writes, packed and with arrays of bits. Series that make
+no volume must be refused in one line. Exits 77 when NumPy is missing, 1 when something differs.
 """
 import itertools
 import os
@@ -132,7 +132,7 @@ def read_by_command(run, name, *more):
 
 def check_orientations(run, random_numbers):
     kinds = itertools.cycle(("i2", "u2", "u1", "i1"))
-    for n, affine in enumerate(orientations()):
+    for n, affine in enumerate(itertools.islice(orientations(), 0, None, 5)):
         samples = random_numbers.integers(0, 120, DIMS).astype(next(kinds))
         write_series(folder_of(run, "series"), samples, affine, seed=n)
         found = read_by_command(run, "series")
@@ -286,7 +286,7 @@ def check_refusals(run, random_numbers):
     write_series(folder_of(run, "bad"), samples, affine)
     with open(run.path("bad/002.dcm"), "rb") as file:
         whole = file.read()
-    for seed in range(12):  # damaged files give a volume or one line
+    for seed in range(8):  # damaged files give a volume or one line
         source = random.Random(seed)
         data = bytearray(whole[: source.randrange(100, len(whole))] if seed % 2 else whole)
         for _ in range(8):
@@ -346,7 +346,7 @@ def write_vti(path, samples, affine, compressor):
 def check_vti(run, random_numbers):
     if not vtk:
         return
-    for n, affine in enumerate(itertools.islice(orientations(), 0, None, 9)):
+    for n, affine in enumerate(itertools.islice(orientations(), 0, None, 13)):
         samples = random_numbers.integers(0, 120, DIMS).astype(("i2", "f4", "u1", "f8", "u4", "i1")[n % 6])
         write_vti(run.path("a.vti"), samples, affine, n % 4)
         run("import", "a.vti", "-o", "a.vtkhdf")
@@ -356,6 +356,8 @@ def check_vti(run, random_numbers):
         expect(f"bits {n}", read_nifti(run.path("mask.nii")), ((samples > 60).astype("u1"), affine))
         if "PointData/words" not in run("info", "a.vti"):
             sys.exit("the array of texts is not named")
+        if n > 0:
+            continue
         run("mesh", "a.vti", "--array", "mask", "-o", "m.vtkhdf", "--cells", "3", "--threshold", "-1")
         run("deform", "m.vtkhdf", "-o", "moved.vtkhdf", "--kind", "rotate", "--amount", "0", "--steps", "1")
         run("warp", "a.vti", "moved.vtkhdf", "-o", "w.vti", "--outputs", "mask", "--filter", "nearest")
@@ -391,7 +393,7 @@ def main():
         check_packed(run, random_numbers)
         check_series(run, random_numbers)
         check_refusals(run, random_numbers)
-    print("DICOM series of 48 orientations, values, places, series and refusals; .vti images")
+    print("DICOM series of 10 orientations, values, places, series and refusals; .vti images")
 
 
 if __name__ == "__main__":
