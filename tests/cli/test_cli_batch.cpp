@@ -314,6 +314,32 @@ TEST_F(Batch, SkipsJobsWhoseProvenanceAgrees) {
   EXPECT_EQ(ends(jobs, "2 done, 0 failed, 0 skipped", {"--background", "3"}), "");
 }
 
+/// The samples of a pair count, of outputs and of inputs.
+TEST_F(Batch, ComparesSamplesBesideTheirHeader) {
+  const std::string first = batch_of({job("a.mhd", R"(, "steps": 0)")});
+  const std::string both = batch_of(
+      {job("a.mhd", R"(, "steps": 0)"),
+       R"({"volume": "a.mhd", "mesh": "../mesh.vtkhdf", "output": "b.nrrd", "steps": 1})"});
+  EXPECT_EQ(run(first, {"--provenance"}).exit_code, 0);
+  EXPECT_EQ(run(both, {"--provenance"}).exit_code, 0);
+  const auto counts = [&] {
+    const std::string out = run(both, {"--provenance", "--resume"}).out;
+    return out.substr(out.rfind('\n', out.size() - 2) + 1);
+  };
+  const std::string whole = text_of(scene / "jobs/a.raw");
+
+  EXPECT_EQ(counts(), "0 done, 0 failed, 2 skipped\n");
+  write_text(scene / "jobs/a.raw", whole.substr(0, whole.size() / 2) + whole);
+  EXPECT_EQ(counts(), "1 done, 0 failed, 1 skipped\n");
+  EXPECT_EQ(text_of(scene / "jobs/a.raw"), whole);
+  std::string facts = text_of(scene / "jobs/b.nrrd.json");
+  const std::string hash = sha256_of_file(scene / "jobs/a.raw");
+  ASSERT_NE(facts.find(hash), std::string::npos);
+  write_text(scene / "jobs/b.nrrd.json",
+             facts.replace(facts.find(hash), hash.size(), std::string(hash.size(), '0')));
+  EXPECT_EQ(counts(), "1 done, 0 failed, 1 skipped\n");
+}
+
 TEST_F(Batch, NamesThePlaceWhereTheFileIsNoJson) {
   const CommandResult result = run("{\"jobs\": [\n  {\"volume\": }\n]}");
 

@@ -32,6 +32,14 @@ Json facts_of(const std::string& role, const std::string& path) {
           {"sha256", sha256_of_file(path)}};
 }
 
+/// Facts of an output, and of its samples where they are a file of their own.
+Json facts_of_output(const std::string& output) {
+  Json facts = {{"output", facts_of("output", output)}};
+  const std::vector<std::string> files = files_of(output);
+  if (files.size() > 1) facts["samples"] = facts_of("samples", files[1]);
+  return facts;
+}
+
 /// All files that a job reads; a list of files with those that it names.
 Json facts_of_inputs(const WarpArguments& arguments) {
   Json inputs = Json::array();
@@ -98,12 +106,15 @@ ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& 
       continue;
     }
     if (inputs.is_null()) inputs = contents_of(facts_of_inputs(arguments));
-    const bool agrees =
-        facts.value("tetwarp", Json()) == TETWARP_VERSION &&
-        deciding_options(facts.value("options", Json::object())) ==
-            deciding_options(given_as_json(arguments)) &&
-        contents_of(facts.value("inputs", Json::array())) == inputs &&
-        contents_of({facts.value("output", Json())}) == contents_of({facts_of("output", output)});
+    const Json now = facts_of_output(output);
+    const auto is_as_written = [&](const char* file) {
+      return contents_of({facts.value(file, Json())}) == contents_of({now.value(file, Json())});
+    };
+    const bool agrees = facts.value("tetwarp", Json()) == TETWARP_VERSION &&
+                        deciding_options(facts.value("options", Json::object())) ==
+                            deciding_options(given_as_json(arguments)) &&
+                        contents_of(facts.value("inputs", Json::array())) == inputs &&
+                        is_as_written("output") && is_as_written("samples");
     if (!agrees) return ProvenanceState::contradicts;
   }
   return is_missing ? ProvenanceState::missing : ProvenanceState::agrees;
@@ -126,7 +137,7 @@ void write_provenance(const WarpArguments& arguments,
                  {"warnings", result.warnings}};
       }
       Json own = facts;
-      own["output"] = facts_of("output", output);
+      own.update(facts_of_output(output));
       write_finished_file(file, json_text(own, 2) + "\n");
     }
   }

@@ -40,8 +40,7 @@ void run_volume_import(const ImportArguments& arguments) {
   if (kind_of(arguments.input) != FileKind::image) {
     check_kind(arguments.input, FileKind::nifti,
                "usage: tetwarp import FILE -o VOLUME, with a NIfTI, NRRD, MetaImage or .vti file, "
-               "a folder "
-               "of DICOM images, or a mesh named .msh, .vtu or .vtk");
+               "a folder of DICOM images, or a mesh named .msh, .vtu or .vtk");
   } else if (arguments.axes) {
     throw IoError(
         arguments.input, "",
