@@ -34,6 +34,7 @@ struct alignas(64) EightIndices {
   unsigned inside;  ///< bits of those within the grid; all are clamped to it
 };
 
+/// The links of a map, eight voxels at a time.
 class RowLinks {
  public:
   /// @param map    of the job, with links; must outlive the object
