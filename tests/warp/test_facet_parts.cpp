@@ -83,6 +83,34 @@ TEST(FacetParts, AreThoseOfEachVoxel) {
   }
 }
 
+/// Area in the plane of the first two coordinates.
+double area_across_z(const Triangle& polygon) {
+  double area = 0;
+  for (int c = 0; c < polygon.count; ++c) {
+    const double *a = polygon.corner[c].x, *b = polygon.corner[(c + 1) % polygon.count].x;
+    area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+  }
+  return area;
+}
+
+/// An edge in the plane, whose corners rounding has put on its two sides in turn.
+TEST(CutPolygon, KeepsItsAreaWhereCornersAreInThePlane) {
+  constexpr double tiny = 1e-16;
+  for (int pattern = 0; pattern < 16; ++pattern) {
+    Triangle square, below, above;
+    square.append({{-2, 0, 0}});
+    for (int c = 0; c < 4; ++c) {
+      square.append({{(pattern >> c & 1) != 0 ? tiny : -tiny, c < 2 ? 0.0 : 1.0 * (c - 1), 0}});
+    }
+    square.append({{-2, 2, 0}});
+    cut_polygon<0>(square, 0.0, below, above);
+    EXPECT_NEAR(std::abs(area_across_z(below)), 4, 1e-14) << pattern;
+    EXPECT_NEAR(area_across_z(above), 0, 1e-14) << pattern;
+    cut_above<0>(square, 0.0, above);
+    EXPECT_NEAR(area_across_z(above), 0, 1e-14) << pattern;
+  }
+}
+
 TEST(CutPolygon, HasItsPartsOnBothSides) {
   Triangle facet, below, above;
   facet.append({{0, 0, 0}});
@@ -91,6 +119,7 @@ TEST(CutPolygon, HasItsPartsOnBothSides) {
   cut_polygon<0>(facet, 2.0, below, above);  // an edge in the plane
   EXPECT_EQ(below.count, 3);
   EXPECT_EQ(above.count, 4);
+  EXPECT_NEAR(area_across_z(above), 0, 1e-15);
   cut_polygon<0>(facet, 3.0, below, above);
   EXPECT_EQ(below.count, 3);
   EXPECT_FALSE(above.has_area());

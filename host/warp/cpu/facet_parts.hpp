@@ -18,8 +18,9 @@ struct Polygon {
   struct Corner {
     double x[size];
   };
-  /// Each cut adds one corner: to a triangle two per axis of two spaces, to a square fewer.
-  static constexpr int capacity = 15;
+  /// Each cut adds one corner: to a triangle two per axis of two spaces, to a square fewer. Where
+  /// corners lie in a plane to within rounding, it may add more, for which there is some room.
+  static constexpr int capacity = 20;
 
   int count = 0;
   Corner corner[capacity];
@@ -53,18 +54,18 @@ void cut_polygon(const Polygon<size>& from,
                  Polygon<size>& below,
                  Polygon<size>& above) {
   using Corner = typename Polygon<size>::Corner;
-  int below_count = 0, above_count = 0, crossings = 0;
+  int below_count = 0, above_count = 0;
   const Corner* last = &from.corner[from.count - 1];
   bool was_above = last->x[axis] >= plane;
   for (int c = 0; c < from.count; ++c) {
     const Corner* const now = &from.corner[c];
     const bool is_above = now->x[axis] >= plane;
-    if (is_above != was_above && crossings < 2) {  // more are of rounding
+    const int most = (below_count > above_count ? below_count : above_count) + from.count - c;
+    if (is_above != was_above && most < Polygon<size>::capacity) {
       const Corner cut =
           cut_edge<axis, size>(is_above ? *last : *now, is_above ? *now : *last, plane);
       below.corner[below_count++] = cut;
       above.corner[above_count++] = cut;
-      ++crossings;
     }
     if (is_above) {
       above.corner[above_count++] = *now;
@@ -82,16 +83,15 @@ void cut_polygon(const Polygon<size>& from,
 template <int axis, int size>
 void cut_above(const Polygon<size>& from, double plane, Polygon<size>& above) {
   using Corner = typename Polygon<size>::Corner;
-  int count = 0, crossings = 0;
+  int count = 0;
   const Corner* last = &from.corner[from.count - 1];
   bool was_above = last->x[axis] >= plane;
   for (int c = 0; c < from.count; ++c) {
     const Corner* const now = &from.corner[c];
     const bool is_above = now->x[axis] >= plane;
-    if (is_above != was_above && crossings < 2) {
+    if (is_above != was_above && count + from.count - c < Polygon<size>::capacity) {
       above.corner[count++] =
           cut_edge<axis, size>(is_above ? *last : *now, is_above ? *now : *last, plane);
-      ++crossings;
     }
     if (is_above) above.corner[count++] = *now;
     last = now;
