@@ -98,7 +98,7 @@ TEST(WarpIntensity, IsTheReferenceForBadMeshes) {
   }
 }
 
-/// 343 voxels of the source go into one, and 216 of constant samples.
+/// Up to 343 voxels of the source go into one, of samples that vary or are all the same.
 TEST(WarpIntensity, KeepsTheTotalOfShrunkAndConstantSources) {
   const Grid grid = scenes::unit_grid(28, 28, 28);
   for (const double scale : {1.0 / 7, 1.0 / 3, 0.5}) {
