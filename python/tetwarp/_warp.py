@@ -116,7 +116,7 @@ class Warper:
     Parameters
     ----------
     volume : Volume, or samples of shape (z, y, x) or (z, y, x, c), of 8- to 64-bit integers,
-        float32 or float64; or a list of these on one grid
+        float32 or float64, of NumPy or by DLPack; or a list of these on one grid
     rest : (n, 3) node positions at rest, x y z [world]
     cells : (m, 4) tetrahedra, (m, 8) hexahedra, or a pair of both; integers
     spacing, origin, direction, affine : of the grid of arrays, see Grid
@@ -223,8 +223,9 @@ class Warper:
         Parameters
         ----------
         deformed : (n, 3) positions of the nodes [world]; read in place if float64 in C order
-        out : array to write to, of the shape and type of the output, in C order; for several
-            volumes a list of them. None: new arrays
+        out : array to write to, of the shape and type of the output, in C order, of NumPy or by
+            DLPack; for several volumes a list of them. None: new arrays, of the library of the
+            source
         outputs : further outputs: ``"mask"`` (1 where covered), ``"owner"`` (number of the cell,
             -1: none), ``"displacement"`` (rest position minus voxel's position), ``"jacobian"``
             (det F), ``"gradient"`` (F, row by row), ``"strain"`` (Green-Lagrange, XX YY ZZ XY YZ
