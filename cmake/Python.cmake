@@ -39,7 +39,8 @@ target_include_directories(tetwarp_python PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(tetwarp_python PRIVATE tetwarp_io tetwarp_options)
 
 set(tetwarp_python_files __init__.py _arrays.py _autograd.py _bridges.py _certify.py _contact.py
-  _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _simulate.py _tracker.py _volume.py _warp.py py.typed)
+  _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _simulate.py _tracker.py _volume.py
+  _warp.py py.typed)
 file(MAKE_DIRECTORY ${tetwarp_package})
 foreach(file IN LISTS tetwarp_python_files)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/tetwarp/${file} ${tetwarp_package}/${file} SYMBOLIC)

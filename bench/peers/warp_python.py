@@ -9,9 +9,9 @@
 A PEER needs its own package only; each case runs in a process of its own, under Linux. Seconds are
 of the processor, one thread, the least of three runs (SciPy: of two), of the whole call: what
 follows from node positions alone is part of it. Memory is the peak of the process in the first run
-beyond its inputs and imports. Exact are the owners of the back end `reference`; of each covered voxel the source position
-and the linear sample are computed in float64. Wrong are covered voxels that differ by more than a
-thousandth of the range of the image.
+beyond its inputs and imports. Exact are the owners of the back end `reference`; of each covered
+voxel the source position and the linear sample are computed in float64. Wrong are covered voxels
+that differ by more than a thousandth of the range of the image.
 """
 
 import json

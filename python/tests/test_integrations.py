@@ -60,7 +60,8 @@ def vtk_mesh(points, cells):
     places.SetData(numpy_to_vtk(np.array(points), deep=True))
     grid.SetPoints(places)
     width = cells.shape[1]
-    array.SetData(numpy_to_vtkIdTypeArray(np.append(0, 1 + width * np.arange(len(cells) + 1)), True),
+    offsets = np.append(0, 1 + width * np.arange(len(cells) + 1))
+    array.SetData(numpy_to_vtkIdTypeArray(offsets, True),
                   numpy_to_vtkIdTypeArray(np.append(0, cells.ravel()).astype(np.int64), True))
     kind = VTK_TETRA if width == 4 else VTK_HEXAHEDRON
     grid.SetCells([VTK_VERTEX] + [kind] * len(cells), array)
