@@ -45,11 +45,17 @@ file(MAKE_DIRECTORY ${tetwarp_package})
 foreach(file IN LISTS tetwarp_python_files)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/tetwarp/${file} ${tetwarp_package}/${file} SYMBOLIC)
 endforeach()
+# The module searches it in its own folder.
+file(CREATE_LINK ${PROJECT_BINARY_DIR}/tetwarp-read ${tetwarp_package}/tetwarp-read SYMBOLIC)
+add_dependencies(tetwarp_python tetwarp_read)
 nanobind_add_stub(tetwarp_python_stub MODULE _core PYTHON_PATH ${tetwarp_package}
   OUTPUT ${tetwarp_package}/_core.pyi DEPENDS tetwarp_python)
 
 if(SKBUILD)
   install(TARGETS tetwarp_python LIBRARY DESTINATION tetwarp COMPONENT python)
   install(FILES ${tetwarp_package}/_core.pyi DESTINATION tetwarp COMPONENT python)
-  install(TARGETS tetwarp_command RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR} COMPONENT python)
+  # Module and command search the reader beside them.
+  install(TARGETS tetwarp_read RUNTIME DESTINATION tetwarp COMPONENT python)
+  install(TARGETS tetwarp_command tetwarp_read RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR}
+    COMPONENT python)
 endif()
