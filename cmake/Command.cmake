@@ -2,6 +2,8 @@
 add_executable(tetwarp_command)
 tetwarp_sources(tetwarp_command host/cli
   main.cpp)
+tetwarp_sources(tetwarp_command host/cli/certify
+  cmd_certify.cpp)
 tetwarp_sources(tetwarp_command host/cli/common
   declare.cpp file_checks.cpp interrupt.cpp progress_bar.cpp ranks.cpp ranks_${tetwarp_mpi}.cpp)
 tetwarp_sources(tetwarp_command host/cli/contact

@@ -133,7 +133,8 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_straight.cpp
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_transforms.cpp
-  tests/cli/test_cli_warnings.cpp)
+  tests/cli/test_cli_warnings.cpp
+  tests/cli/test_cli_certify.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests
   tests/cli/test_cli_memory.cpp

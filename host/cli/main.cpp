@@ -41,6 +41,7 @@ void declare(CLI::App& app, Run& run) {
   add_simulate_command(app, run);
   add_view_command(app, run);
   add_contact_command(app, run);
+  add_certify_command(app, run);
   add_mesh_command(app, run);
   add_deform_command(app, run);
   add_points_command(app, run);

@@ -101,6 +101,7 @@ ALLOWED = {
     "io/picture": ["io/files", *IO],
     "host/view": ["io/tetwarp", "io/files", "host/base", *BASE],
     "host/view/window": ["host/view", "io/tetwarp", "io/files", "host/base", *BASE],
+    "host/cli/certify": ["host/cli/common", "host/cli/job", *CLI],
     "host/cli/common": CLI,
     "host/cli/contact": ["host/cli/common", *CLI],
     "host/cli/job": ["host/cli/common", *CLI],

@@ -17,6 +17,7 @@ void add_points_command(CLI::App& app, Run& run);
 void add_compose_command(CLI::App& app, Run& run);
 void add_invert_command(CLI::App& app, Run& run);
 void add_contact_command(CLI::App& app, Run& run);
+void add_certify_command(CLI::App& app, Run& run);
 void add_simulate_command(CLI::App& app, Run& run);
 void add_view_command(CLI::App& app, Run& run);
 void add_import_command(CLI::App& app, Run& run);
