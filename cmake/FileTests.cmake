@@ -116,6 +116,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_grid.cpp
   tests/cli/test_cli_outputs.cpp
   tests/cli/test_cli_pair.cpp
+  tests/cli/test_cli_plot.cpp
   tests/cli/test_cli_points.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
@@ -127,7 +128,8 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_straight.cpp
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_transforms.cpp
-  tests/cli/test_cli_warnings.cpp)
+  tests/cli/test_cli_warnings.cpp
+  host/cli/tools/chart.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests
   tests/cli/test_cli_memory.cpp

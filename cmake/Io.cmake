@@ -40,7 +40,8 @@ tetwarp_sources(tetwarp_io io/transforms
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf
-  simulation_mesh.cpp simulation_points.cpp simulation_series.cpp surface_file.cpp vtkhdf_array.cpp
+  series_reader.cpp simulation_mesh.cpp simulation_points.cpp simulation_series.cpp
+  surface_file.cpp vtkhdf_array.cpp
   vtkhdf_cells.cpp vtkhdf_image.cpp vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp
   vtkhdf_volume.cpp vtkhdf_write.cpp vtkhdf_write_mesh.cpp)
 add_library(tetwarp::io ALIAS tetwarp_io)
