@@ -13,7 +13,7 @@
 namespace tetwarp::cli {
 namespace {
 constexpr int plot_width = 400, plot_height = 150;  // [pixel], as all lengths below
-constexpr int left = 74, top = 34, gap = 26, legend_width = 118, foot = 44;
+constexpr int left = 84, top = 34, gap = 26, legend_width = 130, foot = 44;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// Colors that people who cannot tell red from green can distinguish (Okabe and Ito 2008).
 constexpr std::array<const char*, 8> colors{"#000000", "#e69f00", "#56b4e9", "#009e73",
