@@ -49,6 +49,7 @@ bench_peers() {
   cmake --build "$folder" --target tetwarp_bench_peers
   "$folder/tetwarp_bench_peers" "$results-beside.json" || return
   bench_cantilever
+  bench_contact_scenes
   "$python" -c 'import siconos.numerics, h5py, scipy' 2>/dev/null || return 0
   "$folder/tetwarp_bench_contact" --export="$problems"
   while read -r -d : folder_of_files; do cp "$folder_of_files"/*.hdf5 "$problems"; done \
@@ -80,6 +81,21 @@ bench_cantilever() {
   else
     echo "missing: newton (PyPI); the cantilever in Newton is left out"
   fi
+}
+
+# Scenes with contact in several simulators, on one thread; a program that is missing is left out.
+bench_contact_scenes() {
+  local peers=$root/bench/peers log=$results-contact-scenes.log program module
+  (cd "$peers" && "$python" -c 'import contact_scenes; print(contact_scenes.HEADER)') >"$log" || return
+  for program in tetwarp:h5py mujoco:mujoco pybullet:pybullet drake:pydrake newton:newton; do
+    module=${program#*:} program=${program%:*}
+    if ! "$python" -c "import numpy, $module" 2>/dev/null; then
+      echo "missing: $module; the scenes with contact in $program are left out"
+    else
+      (cd "$folder" && OMP_NUM_THREADS=1 "$python" "$peers/contact_scenes_$program.py" \
+        "$folder/tetwarp") | tee -a "$log" || echo "contact_scenes_$program.py failed"
+    fi
+  done
 }
 
 # Tables and plots of the results files that were written.

@@ -11,13 +11,22 @@
 
 namespace tetwarp {
 
-std::string processor_name() {
+namespace {
+
+std::string read_processor_name() {
   std::ifstream cpuinfo("/proc/cpuinfo");
   for (std::string line; std::getline(cpuinfo, line);) {
     const std::size_t colon = line.find(": ");
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
   return "unknown processor";
+}
+
+}  // namespace
+
+std::string processor_name() {
+  static const std::string name = read_processor_name();  // reading it takes longer than a solve
+  return name;
 }
 
 std::unique_ptr<WarpBackend> make_cpu_backend(const WarpPlan& plan) {
