@@ -122,6 +122,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_grid.cpp
   tests/cli/test_cli_outputs.cpp
   tests/cli/test_cli_pair.cpp
+  tests/cli/test_cli_plot.cpp
   tests/cli/test_cli_points.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
@@ -134,7 +135,9 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_transforms.cpp
   tests/cli/test_cli_warnings.cpp
-  tests/cli/test_cli_certify.cpp)
+  tests/cli/test_cli_certify.cpp
+  host/cli/tools/chart.cpp)
+target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests
   tests/cli/test_cli_memory.cpp

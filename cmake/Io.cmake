@@ -42,10 +42,10 @@ tetwarp_sources(tetwarp_io io/transforms
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf
-  simulation_mesh.cpp simulation_points.cpp simulation_series.cpp surface_file.cpp surface_reader.cpp
-  vtkhdf_array.cpp
-  vtkhdf_cells.cpp vtkhdf_image.cpp vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp
-  vtkhdf_volume.cpp vtkhdf_write.cpp vtkhdf_write_mesh.cpp)
+  series_reader.cpp simulation_mesh.cpp simulation_points.cpp simulation_series.cpp
+  surface_file.cpp surface_reader.cpp vtkhdf_array.cpp vtkhdf_cells.cpp vtkhdf_image.cpp
+  vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp vtkhdf_volume.cpp vtkhdf_write.cpp
+  vtkhdf_write_mesh.cpp)
 add_library(tetwarp::io ALIAS tetwarp_io)
 set_target_properties(tetwarp_io PROPERTIES EXPORT_NAME io VERSION ${PROJECT_VERSION} SOVERSION 0
   UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)

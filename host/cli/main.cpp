@@ -50,6 +50,7 @@ void declare(CLI::App& app, Run& run) {
   add_import_command(app, run);
   add_export_command(app, run);
   add_render_command(app, run);
+  add_plot_command(app, run);
   add_info_command(app, run);
   add_demo_command(app, run);
   app.footer("tetwarp SUBCOMMAND --help shows options and an example.\nTo begin: tetwarp demo");

@@ -108,7 +108,8 @@ ALLOWED = {
     "host/cli/warp": ["host/cli/common", "host/cli/job", *CLI],
     "host/cli/simulate": ["host/cli/common", "host/cli/job", "host/view", "io/vtkhdf", *CLI],
     "host/cli/view": ["host/cli/common", "host/view", *CLI],
-    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", "io/fclib", *CLI],
+    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", "io/fclib",
+                       "io/vtkhdf", *CLI],
     "host/cli": ["host/cli/common", *CLI],
 }
 INCLUDE_ROOTS = ["host", "io", "kernels/base"]  # of headers named <tetwarp/...>

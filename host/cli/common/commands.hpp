@@ -23,6 +23,7 @@ void add_view_command(CLI::App& app, Run& run);
 void add_import_command(CLI::App& app, Run& run);
 void add_export_command(CLI::App& app, Run& run);
 void add_render_command(CLI::App& app, Run& run);
+void add_plot_command(CLI::App& app, Run& run);
 void add_info_command(CLI::App& app, Run& run);
 void add_demo_command(CLI::App& app, Run& run);
 
