@@ -115,6 +115,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_bad_layouts.cpp
   tests/cli/test_cli_batch.cpp
+  tests/cli/test_cli_certify.cpp
   tests/cli/test_cli_contact.cpp
   tests/cli/test_cli_contact_usage.cpp
   tests/cli/test_cli_fields.cpp
@@ -135,7 +136,6 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_transforms.cpp
   tests/cli/test_cli_warnings.cpp
-  tests/cli/test_cli_certify.cpp
   host/cli/tools/chart.cpp)
 target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)
