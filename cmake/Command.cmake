@@ -2,6 +2,8 @@
 add_executable(tetwarp_command)
 tetwarp_sources(tetwarp_command host/cli
   main.cpp)
+tetwarp_sources(tetwarp_command host/cli/certify
+  cmd_certify.cpp)
 tetwarp_sources(tetwarp_command host/cli/common
   declare.cpp file_checks.cpp interrupt.cpp progress_bar.cpp ranks.cpp ranks_${tetwarp_mpi}.cpp)
 tetwarp_sources(tetwarp_command host/cli/contact
@@ -15,9 +17,9 @@ tetwarp_sources(tetwarp_command host/cli/simulate
   simulate_contacts.cpp simulate_frames.cpp simulate_pictures.cpp simulate_report.cpp
   simulate_run.cpp simulate_series.cpp simulate_warp.cpp)
 tetwarp_sources(tetwarp_command host/cli/tools
-  cmd_compose.cpp cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp
-  cmd_invert.cpp cmd_mesh.cpp cmd_points.cpp cmd_render.cpp displacement.cpp mesh_options.cpp
-  read_array.cpp transform_chain.cpp)
+  chart.cpp cmd_compose.cpp cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp
+  cmd_invert.cpp cmd_mesh.cpp cmd_plot.cpp cmd_points.cpp cmd_render.cpp displacement.cpp
+  mesh_options.cpp read_array.cpp transform_chain.cpp)
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp

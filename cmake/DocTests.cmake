@@ -5,9 +5,9 @@ if(NOT TETWARP_PYTHON3)
   return()
 endif()
 
-set(tetwarp_pages CHANGELOG CONTRIBUTING README docs/architecture docs/benchmarks docs/contact docs/coordinates
-  docs/cuda docs/formats docs/glossary docs/guide docs/python docs/scenes docs/screens docs/simulate
-  docs/tried docs/view)
+set(tetwarp_pages CHANGELOG CONTRIBUTING README docs/architecture docs/benchmarks docs/compare docs/contact
+  docs/coordinates docs/cuda docs/day docs/formats docs/glossary docs/guide docs/python docs/scenes docs/screens
+  docs/simulate docs/tried docs/view)
 list(TRANSFORM tetwarp_pages REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.md")
 set(tetwarp_docs_test ${TETWARP_PYTHON3} -B ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py)
 add_custom_command(OUTPUT docs_blocks.cpp
@@ -25,7 +25,8 @@ add_test(NAME docs COMMAND ${tetwarp_docs_test} run ${PROJECT_SOURCE_DIR}
   --command $<TARGET_FILE:tetwarp_command> --blocks $<TARGET_FILE:docs_blocks>
   "--mpirun=$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>"
   "--has=$<$<AND:$<BOOL:${TETWARP_HAS_VIEW}>,$<BOOL:${TETWARP_XVFB_RUN}>>:view>"
-  "--has=$<$<BOOL:${TETWARP_HAS_GMSH}>:gmsh>" "--has=$<$<BOOL:${TETWARP_HAS_VTK}>:vtk>"
+  "--has=$<$<BOOL:${TETWARP_HAS_GDCM}>:gdcm>" "--has=$<$<BOOL:${TETWARP_HAS_GMSH}>:gmsh>"
+  "--has=$<$<BOOL:${TETWARP_HAS_VTK}>:vtk>"
   "--python=$<$<BOOL:${TETWARP_HAS_PYTHON}>:${Python_EXECUTABLE}>"
   --package ${PROJECT_BINARY_DIR}/python)
 set_tests_properties(docs PROPERTIES LABELS docs TIMEOUT 300 COST 20)  # starts early

@@ -5,6 +5,7 @@ if(NOT BUILD_SHARED_LIBS)
     SOURCES
     tests/io/test_io_arrays.cpp
     tests/io/test_io_axes.cpp
+    tests/io/test_dicom_stack.cpp
     tests/io/test_io_blocks.cpp
     tests/io/test_io_images.cpp
     tests/io/test_io_vtkhdf_volume.cpp
@@ -29,6 +30,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_mesh_child.cpp
     tests/io/test_left_out.cpp
     tests/io/test_surface_files.cpp
+    io/image/dicom_stack.cpp
     io/reader/surface_seams.cpp)
   # In place of tetwarp-read: ends as the tests want.
   add_executable(fake_reader tests/io/fake_reader.cpp)
@@ -72,6 +74,10 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_axes.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME images COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_images.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME dicom COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_dicom.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME labels COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_labels.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME transforms COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_transforms.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME walk COMMAND ${TETWARP_PYTHON3}
@@ -80,7 +86,7 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME film COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader axes images transforms walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  set_tests_properties(vtk_reader axes images dicom labels transforms walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
@@ -109,6 +115,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_bad_layouts.cpp
   tests/cli/test_cli_batch.cpp
+  tests/cli/test_cli_certify.cpp
   tests/cli/test_cli_contact.cpp
   tests/cli/test_cli_contact_usage.cpp
   tests/cli/test_cli_fields.cpp
@@ -116,6 +123,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_grid.cpp
   tests/cli/test_cli_outputs.cpp
   tests/cli/test_cli_pair.cpp
+  tests/cli/test_cli_plot.cpp
   tests/cli/test_cli_points.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
@@ -127,7 +135,9 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_straight.cpp
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_transforms.cpp
-  tests/cli/test_cli_warnings.cpp)
+  tests/cli/test_cli_warnings.cpp
+  host/cli/tools/chart.cpp)
+target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests
   tests/cli/test_cli_memory.cpp

@@ -2,7 +2,7 @@
 include(cmake/MeshImport.cmake)
 include(cmake/ShippedScenes.cmake)
 # Sources that exist twice, with an optional library and without.
-foreach(library gif gmsh mpi vtk)
+foreach(library gdcm gif gmsh mpi vtk)
   string(TOUPPER ${library} upper)
   if(TETWARP_HAS_${upper})
     set(tetwarp_${library} ${library})
@@ -11,6 +11,8 @@ foreach(library gif gmsh mpi vtk)
   endif()
 endforeach()
 add_library(tetwarp_io ${PROJECT_BINARY_DIR}/shipped_scenes.cpp)
+tetwarp_sources(tetwarp_io io/child
+  child_process.cpp foreign_image.cpp foreign_source.cpp image_kind.cpp reader_program.cpp)
 tetwarp_sources(tetwarp_io io/fclib
   contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_left_out.cpp fclib_matrix.cpp
   fclib_numbers.cpp fclib_rows.cpp fclib_write.cpp)
@@ -22,9 +24,9 @@ tetwarp_sources(tetwarp_io io/h5
   value_names.cpp)
 tetwarp_sources(tetwarp_io io/image
   image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp mgh_header.cpp
-  nrrd_header.cpp)
+  nrrd_header.cpp vti_write.cpp)
 tetwarp_sources(tetwarp_io io/import
-  child_process.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp)
+  merge_cells.cpp mesh_child.cpp mesh_import.cpp)
 tetwarp_sources(tetwarp_io io/nifti
   nifti_components.cpp nifti_extension.cpp nifti_facts.cpp nifti_fields.cpp nifti_grid.cpp
   nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)
@@ -40,9 +42,10 @@ tetwarp_sources(tetwarp_io io/transforms
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf
-  simulation_mesh.cpp simulation_points.cpp simulation_series.cpp surface_file.cpp vtkhdf_array.cpp
-  vtkhdf_cells.cpp vtkhdf_image.cpp vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp
-  vtkhdf_volume.cpp vtkhdf_write.cpp vtkhdf_write_mesh.cpp)
+  series_reader.cpp simulation_mesh.cpp simulation_points.cpp simulation_series.cpp
+  surface_file.cpp surface_reader.cpp vtkhdf_array.cpp vtkhdf_cells.cpp vtkhdf_image.cpp
+  vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp vtkhdf_volume.cpp vtkhdf_write.cpp
+  vtkhdf_write_mesh.cpp)
 add_library(tetwarp::io ALIAS tetwarp_io)
 set_target_properties(tetwarp_io PROPERTIES EXPORT_NAME io VERSION ${PROJECT_VERSION} SOVERSION 0
   UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
@@ -59,16 +62,21 @@ list(APPEND tetwarp_exported tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png t
 # some damaged files. It is compiled with what it needs of tetwarp::io, since a shared library hides
 # its private code.
 add_library(tetwarp_reader STATIC)
+tetwarp_sources(tetwarp_reader io/child
+  image_kind.cpp)
 tetwarp_sources(tetwarp_reader io/files
   extension.cpp memory.cpp numbered_files.cpp)
+tetwarp_sources(tetwarp_reader io/image
+  dicom_stack.cpp image_header.cpp)
 tetwarp_sources(tetwarp_reader io/volume
   mesh_arrays.cpp)
 tetwarp_sources(tetwarp_reader io/reader
-  mesh_${tetwarp_gmsh}.cpp mesh_readers.cpp mesh_sender.cpp mesh_${tetwarp_vtk}.cpp)
+  dicom_${tetwarp_gdcm}.cpp image_readers.cpp mesh_${tetwarp_gmsh}.cpp mesh_readers.cpp
+  mesh_sender.cpp mesh_${tetwarp_vtk}.cpp)
 if(TETWARP_HAS_VTK)
   tetwarp_sources(tetwarp_reader io/reader
-    mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_file_list.cpp vtk_point_set.cpp
-    vtk_steps.cpp)
+    image_vtk.cpp mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_file_list.cpp
+    vtk_point_set.cpp vtk_steps.cpp)
 endif()
 set_target_properties(tetwarp_reader PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_reader PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/io)
@@ -86,7 +94,7 @@ if(BUILD_SHARED_LIBS)
 else()
   file(RELATIVE_PATH tetwarp_reader_path /${CMAKE_INSTALL_BINDIR} /${tetwarp_reader_folder})
 endif()
-set_property(SOURCE io/import/mesh_child.cpp PROPERTY COMPILE_DEFINITIONS
+set_property(SOURCE io/child/reader_program.cpp PROPERTY COMPILE_DEFINITIONS
   TETWARP_READER_FROM_HERE="${tetwarp_reader_path}/tetwarp-read"
   TETWARP_READER_INSTALLED="${CMAKE_INSTALL_FULL_LIBEXECDIR}/tetwarp/tetwarp-read")
 install(TARGETS tetwarp_read DESTINATION ${tetwarp_reader_folder})

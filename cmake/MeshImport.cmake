@@ -1,9 +1,9 @@
-# Libraries that read meshes of other programs: VTK (.vtu, .vtk, surfaces) and Gmsh (.msh), in the program
-# tetwarp-read alone. Both are optional; without one, importing its format fails with an error that names the
-# package. A bundle contains neither.
-foreach(name VTK Gmsh)
+# Libraries that read meshes and images of other programs: VTK (.vtu, .vtk, surfaces, .vti), Gmsh (.msh) and
+# GDCM (DICOM), in the program tetwarp-read alone. All are optional; without one, reading its format fails with
+# an error that names the package. A bundle contains none.
+foreach(name VTK Gmsh GDCM)
   string(TOUPPER ${name} upper)
-  set(TETWARP_${upper} AUTO CACHE STRING "Import of meshes through ${name}: AUTO, ON or OFF")
+  set(TETWARP_${upper} AUTO CACHE STRING "Reading of files through ${name}: AUTO, ON or OFF")
   set_property(CACHE TETWARP_${upper} PROPERTY STRINGS AUTO ON OFF)
   if(TETWARP_BUNDLE)
     set(TETWARP_${upper} OFF)
@@ -51,4 +51,22 @@ if(TETWARP_HAS_GMSH)  # loaded at run time, see io/reader/gmsh_library.hpp
   target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE ${TETWARP_GMSH_INCLUDE})
   target_link_libraries(tetwarp_mesh_import INTERFACE ${CMAKE_DL_LIBS})
 endif()
-message(STATUS "tetwarp: meshes of other programs: VTK: ${TETWARP_HAS_VTK}, Gmsh: ${TETWARP_HAS_GMSH}")
+
+set(TETWARP_HAS_GDCM FALSE)
+if(NOT TETWARP_GDCM STREQUAL "OFF")
+  find_path(TETWARP_GDCM_INCLUDE gdcmReader.h PATH_SUFFIXES gdcm-3.0)
+  set(libraries)
+  foreach(part MSFF DSED DICT Common)
+    find_library(TETWARP_GDCM_${part} gdcm${part})
+    list(APPEND libraries ${TETWARP_GDCM_${part}})
+  endforeach()
+  if(TETWARP_GDCM_INCLUDE AND NOT "${libraries}" MATCHES NOTFOUND)
+    set(TETWARP_HAS_GDCM TRUE)
+    target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE ${TETWARP_GDCM_INCLUDE})
+    target_link_libraries(tetwarp_mesh_import INTERFACE ${libraries})
+  elseif(TETWARP_GDCM STREQUAL "ON")
+    message(FATAL_ERROR "TETWARP_GDCM=ON, but GDCM 3 was not found; install libgdcm-dev")
+  endif()
+endif()
+message(STATUS "tetwarp: files of other programs: VTK: ${TETWARP_HAS_VTK}, Gmsh: ${TETWARP_HAS_GMSH}, "
+  "GDCM: ${TETWARP_HAS_GDCM}")

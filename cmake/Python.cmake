@@ -29,7 +29,7 @@ endif()
 
 nanobind_add_module(tetwarp_python NB_STATIC NB_SUPPRESS_WARNINGS
   python/arrays.cpp python/bind_certify.cpp python/bind_contact.cpp python/bind_files.cpp
-  python/bind_mesh.cpp python/bind_operator.cpp python/bind_simulate.cpp python/bind_volume.cpp
+  python/bind_mesh.cpp python/bind_operator.cpp python/bind_simulate.cpp python/bind_tracker.cpp python/bind_volume.cpp
   python/bind_warp.cpp python/interruption.cpp python/module.cpp)
 set(tetwarp_package ${PROJECT_BINARY_DIR}/python/tetwarp)
 set_target_properties(tetwarp_python PROPERTIES
@@ -39,16 +39,23 @@ target_include_directories(tetwarp_python PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(tetwarp_python PRIVATE tetwarp_io tetwarp_options)
 
 set(tetwarp_python_files __init__.py _arrays.py _autograd.py _bridges.py _certify.py _contact.py
-  _fields.py _files.py _grid.py _mesh.py _operator.py _simulate.py _volume.py _warp.py py.typed)
+  _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _simulate.py _tracker.py _volume.py
+  _warp.py py.typed)
 file(MAKE_DIRECTORY ${tetwarp_package})
 foreach(file IN LISTS tetwarp_python_files)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/tetwarp/${file} ${tetwarp_package}/${file} SYMBOLIC)
 endforeach()
+# The module searches it in its own folder.
+file(CREATE_LINK ${PROJECT_BINARY_DIR}/tetwarp-read ${tetwarp_package}/tetwarp-read SYMBOLIC)
+add_dependencies(tetwarp_python tetwarp_read)
 nanobind_add_stub(tetwarp_python_stub MODULE _core PYTHON_PATH ${tetwarp_package}
   OUTPUT ${tetwarp_package}/_core.pyi DEPENDS tetwarp_python)
 
 if(SKBUILD)
   install(TARGETS tetwarp_python LIBRARY DESTINATION tetwarp COMPONENT python)
   install(FILES ${tetwarp_package}/_core.pyi DESTINATION tetwarp COMPONENT python)
-  install(TARGETS tetwarp_command RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR} COMPONENT python)
+  # Module and command search the reader beside them.
+  install(TARGETS tetwarp_read RUNTIME DESTINATION tetwarp COMPONENT python)
+  install(TARGETS tetwarp_command tetwarp_read RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR}
+    COMPONENT python)
 endif()

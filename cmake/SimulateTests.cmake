@@ -209,6 +209,9 @@ if(NOT BUILD_SHARED_LIBS)
     target_compile_definitions(tetwarp_scene_file_tests PRIVATE
       TETWARP_SCENE_PAGE="${PROJECT_SOURCE_DIR}/docs/scenes.md")
     tetwarp_discover(tetwarp_scene_file_tests io)
+    tetwarp_add_tests(tetwarp_short_scene_tests LIBRARIES tetwarp_io SOURCES
+      tests/simulate/laws/test_scene_short.cpp)
+    tetwarp_discover(tetwarp_short_scene_tests io)
     tetwarp_add_tests(tetwarp_scene_law_tests LIBRARIES tetwarp_io SOURCES
       tests/simulate/laws/test_scene_laws.cpp)
     tetwarp_discover(tetwarp_scene_law_tests long)

@@ -11,6 +11,7 @@ void bind_files(nanobind::module_& module);
 void bind_mesh(nanobind::module_& module);
 void bind_operator(nanobind::module_& module);
 void bind_simulate(nanobind::module_& module);
+void bind_tracker(nanobind::module_& module);
 void bind_volume(nanobind::module_& module);
 void bind_warp(nanobind::module_& module);
 

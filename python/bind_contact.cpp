@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "python/adhesion_fields.hpp"
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
@@ -40,21 +41,6 @@ struct MatrixOf {
 constexpr MatrixOf problem_matrices[] = {{"system", &ContactProblem::system},
                                          {"jacobian", &ContactProblem::jacobian},
                                          {"delassus", &ContactProblem::delassus}};
-struct AdhesionOf {
-  const char* name;
-  std::vector<double> AdhesionState::*member;
-};
-constexpr AdhesionOf adhesion_numbers[] = {
-    {"area", &AdhesionState::area},
-    {"stiffness", &AdhesionState::stiffness},
-    {"tangential_stiffness", &AdhesionState::tangential_stiffness},
-    {"intensity", &AdhesionState::intensity},
-    {"gap", &AdhesionState::gap},
-    {"energy", &AdhesionState::energy},
-    {"viscosity", &AdhesionState::viscosity},
-    {"bonding_rate", &AdhesionState::bonding_rate},
-    {"saturation_pressure", &AdhesionState::saturation_pressure}};
-
 std::vector<double> numbers_of(nb::handle array) {
   return vector_of(nb::cast<InNumbers>(array, false));
 }
@@ -70,8 +56,8 @@ SparseMatrix matrix_of(const nb::tuple& matrix) {
 AdhesionState adhesion_of(const nb::dict& all) {
   AdhesionState adhesion;
   adhesion.time_step = nb::cast<double>(all["time_step"]);
-  for (const AdhesionOf& numbers : adhesion_numbers) {
-    if (all.contains(numbers.name)) adhesion.*numbers.member = numbers_of(all[numbers.name]);
+  for (const AdhesionField& field : adhesion_fields) {
+    if (all.contains(field.name)) adhesion.*field.member = numbers_of(all[field.name]);
   }
   return adhesion;
 }
@@ -130,16 +116,6 @@ nb::tuple tuple_of(SparseMatrix matrix) {
                         array_of(std::move(matrix.row_start)), shape);
 }
 
-nb::dict dict_of(AdhesionState adhesion) {
-  nb::dict all;
-  all["time_step"] = adhesion.time_step;
-  for (const AdhesionOf& numbers : adhesion_numbers) {
-    if ((adhesion.*numbers.member).empty()) continue;
-    all[numbers.name] = array_of(std::move(adhesion.*numbers.member));
-  }
-  return all;
-}
-
 /// The arrays that are not empty, by their names.
 template <class Number>
 void write_from(std::vector<Number>& numbers, nb::dict& all, const char* name) {
@@ -177,7 +153,7 @@ nb::dict dict_of(ContactProblem problem) {
     all[numbers.name] = array_of(std::move(problem.*numbers.member));
   }
   if (!problem.block_start.empty()) all["block_start"] = array_of(std::move(problem.block_start));
-  if (!problem.adhesion.empty()) all["adhesion"] = dict_of(std::move(problem.adhesion));
+  if (!problem.adhesion.empty()) all["adhesion"] = adhesion_dict(std::move(problem.adhesion));
   if (!problem.bilateral.empty()) all["bilateral"] = dict_of(std::move(problem.bilateral));
   if (!problem.rolling.empty()) all["rolling"] = dict_of(std::move(problem.rolling));
   return all;

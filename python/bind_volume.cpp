@@ -1,5 +1,6 @@
 /// @file bind_volume.cpp
 /// Grids and phantoms.
+#include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <tetwarp/make.hpp>
+#include <vector>
 
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
@@ -20,6 +22,21 @@ Volume phantom(const std::string& kind,
   if (kind == "orange") return make_orange_phantom(dims, spacing);
   if (kind == "fish") return make_fish_phantom(dims, spacing);
   throw std::invalid_argument("kind: '" + kind + "' is not one of torso, orange, fish");
+}
+
+using WritableArray = nb::ndarray<nb::device::cpu>;
+
+NumpyArray writable_array(const WritableArray& array) {
+  std::vector<std::size_t> shape;
+  std::vector<std::int64_t> strides;
+  for (std::size_t axis = 0; axis < array.ndim(); ++axis) {
+    shape.push_back(array.shape(axis));
+    strides.push_back(array.stride(axis));
+  }
+  const nb::capsule owner(new WritableArray(array), [](void* pointer) noexcept {
+    delete static_cast<WritableArray*>(pointer);
+  });
+  return NumpyArray(array.data(), shape.size(), shape.data(), owner, strides.data(), array.dtype());
 }
 }  // namespace
 
@@ -38,6 +55,8 @@ void bind_volume(nb::module_& module) {
       .def_ro("origin", &Grid::origin)
       .def_ro("spacing", &Grid::spacing)
       .def_ro("direction", &Grid::direction);
+  module.def("writable_array", &writable_array, nb::arg("array"),
+             "An array of any library in host memory as one of NumPy, by DLPack.");
   module.def(
       "phantom",
       [](const std::string& kind, const std::array<std::int64_t, 3>& dims, const Point3& spacing) {

@@ -30,6 +30,11 @@ nb::list backends(int device) {
 
 NB_MODULE(_core, module) {
   using namespace tetwarp;
+  if (PyInterpreterState_GetID(PyInterpreterState_Get()) != 0) {
+    throw nb::import_error(
+        "tetwarp: sub-interpreters are not supported; import it in the main interpreter or in "
+        "another process");
+  }
   module.doc() = "The library behind the package tetwarp.";
   module.attr("version") = TETWARP_VERSION;
   const nb::exception<CudaError> cuda_error(module, "CudaError", PyExc_RuntimeError);
@@ -44,5 +49,6 @@ NB_MODULE(_core, module) {
   python::bind_files(module);
   python::bind_certify(module);
   python::bind_contact(module);
+  python::bind_tracker(module);
   python::bind_simulate(module);
 }

@@ -28,7 +28,7 @@ def main():
     before = image(np.random.default_rng(1))
     grid = tetwarp.Grid(SHAPE)
     rest, cells = tetwarp.lattice_mesh(tetwarp.Volume(before, grid), cells=4)
-    inner = ((rest > 1) & (rest < 22)).all(axis=1)
+    inner = np.all((rest > 1) & (rest < 22), axis=1)
     x, y, z = (rest / 24 * 2 * np.pi).T
     motion = 1.2 * np.stack([np.sin(y), np.sin(z + 1), np.cos(x)], axis=1) * inner[:, None]
     after = tetwarp.WarpOperator(grid, rest, cells, rest + motion, interpolator="cubic").forward(

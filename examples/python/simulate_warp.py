@@ -40,7 +40,8 @@ def main():
         nodes = simulator.positions("orange")
         low, high = nodes.min(axis=0), nodes.max(axis=0)
         shape = np.ceil((high - low) / SPACING).astype(int)[::-1] + 1
-        around = tetwarp.Grid(tuple(shape), (SPACING,) * 3, tuple(low))
+        x, y, z = low
+        around = tetwarp.Grid(tuple(shape), (SPACING, SPACING, SPACING), (x, y, z))
         result = tetwarp.warp(image, *mesh, nodes, reference=around)
         tetwarp.write(f"orange_{step // 10}.nii.gz", result)
         print(f"{simulator.time:.2f} s, {len(simulator.contacts())} contacts: {result}")

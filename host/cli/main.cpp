@@ -41,6 +41,7 @@ void declare(CLI::App& app, Run& run) {
   add_simulate_command(app, run);
   add_view_command(app, run);
   add_contact_command(app, run);
+  add_certify_command(app, run);
   add_mesh_command(app, run);
   add_deform_command(app, run);
   add_points_command(app, run);
@@ -49,6 +50,7 @@ void declare(CLI::App& app, Run& run) {
   add_import_command(app, run);
   add_export_command(app, run);
   add_render_command(app, run);
+  add_plot_command(app, run);
   add_info_command(app, run);
   add_demo_command(app, run);
   app.footer("tetwarp SUBCOMMAND --help shows options and an example.\nTo begin: tetwarp demo");

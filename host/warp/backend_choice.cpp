@@ -29,7 +29,7 @@ double estimated_cpu_seconds(const WarpOptions& options, double samples, bool ha
   // The same file, rows feature/, over the plain step.
   if (options.antialias) nanoseconds *= 8;
   if (options.intensity == Intensity::density) nanoseconds *= 4;
-  if (options.intensity == Intensity::conservative) nanoseconds = 3600;
+  if (options.intensity == Intensity::conservative) nanoseconds = 1700;
   if (has_hexahedra) nanoseconds += 220;
   return 1e-9 * nanoseconds * samples / thread_count(options.threads);
 }

@@ -22,7 +22,7 @@ struct StepShares {
   double fields = 0;
 
   StepShares(const WarpPlan& plan, const FieldTarget& to) {
-    constexpr double with_transforms = 6, conservative = 150, fold_count = 10, field = 0.7;
+    constexpr double with_transforms = 6, conservative = 70, fold_count = 10, field = 0.7;
     if (plan.options.count_folded) fold = fold_count;
     for (std::size_t s = 0; s < plan.sources.size(); ++s) {
       const bool is_plain =

@@ -1,7 +1,6 @@
 /// @file transforms.hpp
 /// The transforms of a step's tetrahedra, for the sources whose samples are changed.
 #pragma once
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -57,12 +56,11 @@ class WarpTransforms {
 
  private:
   TransformChoice choice(Quantity reorientation) const {
-    const double ratio = std::abs(determinant(axes_.source) * determinant(axes_.output_index));
     return {.averages = options_.antialias,
             .divides = options_.intensity != Intensity::value,
             .reorientation = reorientation,
             .axes = axes_,
-            .voxel_ratio = axes_.are_same ? 1.0 : ratio};
+            .voxel_ratio = voxel_ratio_of(axes_)};
   }
 
   Exec& exec_;

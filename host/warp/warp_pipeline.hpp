@@ -12,7 +12,7 @@
 #include "host/warp/fields.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/outputs.hpp"
-#include "host/warp/overlap_batches.hpp"
+#include "host/warp/overlap_stage.hpp"
 #include "host/warp/pairs.hpp"
 #include "host/warp/roundings.hpp"
 #include "host/warp/sources.hpp"
@@ -276,7 +276,8 @@ class WarpPipeline : public WarpBackend {
     job.transforms = {};
     constexpr double raster = 0.01;  // of the time of this source
     if (s == 0) cell_raster(exec_, job, part_of(progress, 0, raster));
-    overlap_in_batches(exec_, op, part_of(progress, s == 0 ? raster : 0, 1));
+    overlap_.run(exec_, op, pairs_.nodes(), pairs_.rest(), voxel_ratio_of(geometry_.axes),
+                 part_of(progress, s == 0 ? raster : 0, 1));
     roundings_.sum(s);
   }
 
@@ -322,6 +323,7 @@ class WarpPipeline : public WarpBackend {
   WarpExtension<Exec> extension_;
   CounterTotals<Exec> counter_totals_;
   CellRaster<Exec> cell_raster_;
+  OverlapStage<Exec> overlap_;
   Flight flights_[2];
   Buffer<std::int64_t> cell_work_;
   Buffer<std::uint16_t> cell_covered_;  ///< covered voxels per cell; kept from step to step

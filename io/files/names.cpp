@@ -16,7 +16,7 @@ constexpr EnumName<FileKind> file_kind_names[] = {
     {FileKind::hdf5, "general HDF5 file"},
     {FileKind::nifti, "NIfTI image"},
     {FileKind::analyze, "Analyze 7.5 image"},
-    {FileKind::image, "NRRD image, MetaImage or image of FreeSurfer"},
+    {FileKind::image, "DICOM, NRRD, VTK or FreeSurfer image or MetaImage"},
     {FileKind::unknown, "file of unknown kind"}};
 constexpr EnumName<FslWarp> fsl_warp_names[] = {{FslWarp::relative, "relative"},
                                                 {FslWarp::absolute, "absolute"}};

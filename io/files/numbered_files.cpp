@@ -60,9 +60,30 @@ bool is_list(const std::string& path) {
          has_extension(path, ".series");
 }
 
+/// Adds the other file of a pair of header and samples: of MetaImage, NRRD and NIfTI.
+void add_partner(const std::string& path, std::vector<std::string>& files) {
+  const auto add = [&](const fs::path& file) {
+    std::error_code error;
+    if (file != path && fs::is_regular_file(file, error)) files.push_back(file.string());
+  };
+  if (has_extension(path, ".mhd") || has_extension(path, ".nhdr")) {
+    std::string text(1 << 16, '\0');
+    std::ifstream(path, std::ios::binary).read(text.data(), std::ssize(text));
+    static const std::regex entry("(ElementDataFile\\s*=|\ndata ?file:)[ \t]*([^\r\n]+)");
+    std::smatch found;
+    if (std::regex_search(text, found, entry)) add(fs::path(path).parent_path() / found[2].str());
+  }
+  const std::vector<std::string> ends{".hdr", ".hdr.gz", ".img", ".img.gz"};
+  for (const std::string& end : ends) {
+    if (!has_extension(path, end)) continue;
+    for (const std::string& other : ends) add(path.substr(0, path.size() - end.size()) + other);
+  }
+}
+
 /// Adds a file and those that it lists. @param depth  of lists that lists may name
 void add_files(const std::string& path, int depth, std::vector<std::string>& files) {
   files.push_back(path);
+  add_partner(path, files);
   if (!is_list(path) || depth == 0) return;
   std::ifstream in(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -103,6 +124,14 @@ bool is_exodus_name(const std::string& path) {
 
 std::vector<std::string> files_of(const std::string& path) {
   std::vector<std::string> files;
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    for (fs::directory_iterator at(path, error), end; !error && at != end; at.increment(error)) {
+      if (at->is_regular_file(error)) files.push_back(at->path().string());
+    }
+    std::ranges::sort(files);
+    return files;
+  }
   constexpr int depth = 2;
   if (!is_pattern(path)) {
     add_files(path, depth, files);

@@ -18,7 +18,8 @@ TETWARP_IO_EXPORT std::vector<std::string> numbered_files(const std::string& pat
 /// True for the names of Exodus files: .e, .exo or .ex2, also in capital letters.
 bool is_exodus_name(const std::string& path);
 
-/// A file and those that it lists, as far as they are there; of a pattern its files.
+/// A file and those that it lists, or the samples that lie beside it, as far as they are there; of
+/// a pattern its files, of a folder the files in it.
 TETWARP_IO_EXPORT std::vector<std::string> files_of(const std::string& path);
 
 /// Bytes of files_of().

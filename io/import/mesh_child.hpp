@@ -1,31 +1,17 @@
 /// @file mesh_child.hpp
 /// Meshes that the program tetwarp-read reads, and the members of a mesh in its message.
 #pragma once
-#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include <tetwarp/mesh_import.hpp>
 
+#include "io/child/reader_program.hpp"
+
 namespace tetwarp {
 
-struct ChildLimits {
-  double seconds;  ///< from the start to the last byte of the result
-  double memory;   ///< [byte] that the program may allocate
-};
-
-/// Far above the time and memory that any sound file needs, also on a busy machine.
-/// @param time  [s] that it may take; 0: by the size of the file
-ChildLimits limits_for(const std::string& path, double time = 0);
-
-/// First value of a message: the result follows, or name of a dataset and text of an error.
-enum class ChildOutcome : std::uint8_t { result, error };
-
-/// Has the program read a mesh, which is not checked. TETWARP_READER in the environment is its
-/// path; else it is searched beside this library or program and where both are installed.
-/// @throws IoError of the reader; when the program is not found, crashes or exceeds its limits
-/// @throws std::runtime_error when it cannot be started or lacks a library
+/// Has the program read a mesh, which is not checked. Errors as of run_reader().
 ImportedMesh read_mesh_in_child(const std::string& path,
                                 const MeshImportOptions& options,
                                 const ChildLimits& limits);

@@ -2,6 +2,7 @@
 /// In place of mesh_vtk.cpp where VTK was missing when this was built.
 #include <tetwarp/error.hpp>
 
+#include "io/reader/image_readers.hpp"
 #include "io/reader/mesh_readers.hpp"
 
 namespace tetwarp {
@@ -22,6 +23,16 @@ void place_vtk_points(const std::string& path, const std::string&, const std::st
 
 ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options) {
   return read_vtk_mesh(path, options);
+}
+
+ForeignImage read_vtk_image(const std::string& path) {
+  throw IoError(path, "",
+                "this build cannot read .vti; install libvtk9-dev and build again, or convert to "
+                "VTKHDF of type ImageData");
+}
+
+void read_vtk_samples(const std::string& path, const std::string&, const TakeSlice&) {
+  read_vtk_image(path);
 }
 
 }  // namespace tetwarp

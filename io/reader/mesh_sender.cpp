@@ -17,8 +17,8 @@
 #include <new>
 #include <tetwarp/error.hpp>
 
+#include "io/child/child_message.hpp"
 #include "io/files/memory.hpp"
-#include "io/import/child_message.hpp"
 #include "io/import/mesh_child.hpp"
 
 namespace tetwarp {
@@ -79,6 +79,16 @@ void answer(MessageWriter& message,
   } else if (what == "place") {
     calls.place(path, words.at(3), words.at(4));
     message(ChildOutcome::result);
+  } else if (what == "image") {
+    const ForeignImage image = calls.image(path, words.at(3));
+    message(ChildOutcome::result);
+    message(image);
+  } else if (what == "samples") {
+    message(ChildOutcome::result);
+    calls.samples(path, words.at(3), words.at(4), [&](const void* samples, std::size_t bytes) {
+      message(ChildOutcome::result);  // an error may come in place of any slice
+      message.write_bytes(samples, bytes);
+    });
   } else {
     MeshImportOptions options;
     options.needs_solids = what == "solids";

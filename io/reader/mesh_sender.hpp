@@ -7,6 +7,8 @@
 
 #include <tetwarp/mesh_import.hpp>
 
+#include "io/child/foreign_image.hpp"
+
 namespace tetwarp {
 
 /// What the program does, each by the library of the file's format.
@@ -17,11 +19,19 @@ struct ReaderCalls {
   std::function<void(
       const std::string& path, const std::string& numbers, const std::string& output)>
       place = {};
+  /// As of image_readers.hpp.
+  std::function<ForeignImage(const std::string& path, const std::string& series)> image = {};
+  std::function<void(const std::string& path,
+                     const std::string& array,
+                     const std::string& series,
+                     const TakeSlice& take)>
+      samples = {};
 };
 
 /// Does what the arguments tell, and sends the result to the standard output, where nothing else
-/// arrives: PATH MEMORY solids|triangles [DISPLACEMENT], PATH MEMORY points, or
-/// PATH MEMORY place NUMBERS OUTPUT, as the functions of mesh_child.hpp give them. Limits the
+/// arrives: PATH MEMORY solids|triangles [DISPLACEMENT], PATH MEMORY points,
+/// PATH MEMORY place NUMBERS OUTPUT, PATH MEMORY image SERIES, or PATH MEMORY samples ARRAY SERIES,
+/// as the functions of mesh_child.hpp and foreign_image.hpp give them. Limits the
 /// memory, leaves no core file, and is killed with the thread that started it.
 /// @returns the exit code
 int send_result(int argc, char** argv, const ReaderCalls& calls);

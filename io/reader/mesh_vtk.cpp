@@ -33,7 +33,7 @@
 
 namespace tetwarp {
 namespace {
-using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
+using GridPointer = vtkSmartPointer<vtkUnstructuredGrid>;
 
 /// VTK reads as many numbers as a file before version 5 declares, and beyond them where a cell goes
 /// on behind the last one.
@@ -69,7 +69,7 @@ void add_tables(const std::string& path, ImportedMesh& into) {
   }
 }
 
-Grid read_legacy_grid(const std::string& path) {
+GridPointer read_legacy_grid(const std::string& path) {
   const vtkNew<vtkUnstructuredGridReader> reader;
   const VtkErrorNotes notes(*reader);
   reader->SetFileName(path.c_str());
@@ -107,7 +107,7 @@ void add_xml(const std::string& path, VtkSteps& into) {
 }
 
 /// The first step of a .vtu file.
-Grid read_xml_grid(const std::string& path) {
+GridPointer read_xml_grid(const std::string& path) {
   const vtkNew<vtkXMLUnstructuredGridReader> reader;
   const VtkErrorNotes notes(*reader);
   if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
@@ -119,20 +119,20 @@ Grid read_xml_grid(const std::string& path) {
 }
 
 /// One grid of several; nodes at the same place stay apart.
-Grid joined(const std::string& path, const std::vector<Grid>& parts) {
+GridPointer joined(const std::string& path, const std::vector<GridPointer>& parts) {
   if (parts.empty()) check_grid(path, nullptr);
   if (parts.size() == 1) return parts.front();
   const vtkNew<vtkAppendFilter> append;
   const VtkErrorNotes notes(*append);
-  for (const Grid& part : parts) append->AddInputData(part);
+  for (const GridPointer& part : parts) append->AddInputData(part);
   append->Update();
   check_grid(path, notes.has_error() ? nullptr : append->GetOutput());
   return append->GetOutput();
 }
 
 /// The unstructured grids of blocks; counts others.
-std::vector<Grid> grids_of(vtkMultiBlockDataSet& blocks, int& others) {
-  std::vector<Grid> grids;
+std::vector<GridPointer> grids_of(vtkMultiBlockDataSet& blocks, int& others) {
+  std::vector<GridPointer> grids;
   const auto at = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks.NewIterator());
   for (at->InitTraversal(); at->IsDoneWithTraversal() == 0; at->GoToNextItem()) {
     vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(at->GetCurrentDataObject());
@@ -151,7 +151,7 @@ void add_other_blocks(int others, ImportedMesh& into) {
   }
 }
 
-Grid read_blocks(const std::string& path, int& others) {
+GridPointer read_blocks(const std::string& path, int& others) {
   const vtkNew<vtkXMLMultiBlockDataReader> reader;
   const VtkErrorNotes notes(*reader);
   if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
@@ -164,7 +164,7 @@ Grid read_blocks(const std::string& path, int& others) {
 }
 
 /// The grid of one file of a series.
-Grid read_part(const std::string& path, int& others) {
+GridPointer read_part(const std::string& path, int& others) {
   if (!std::ifstream(path)) {
     throw IoError(path, "", "cannot be opened, and a list of steps names it");
   }
@@ -177,7 +177,7 @@ Grid read_part(const std::string& path, int& others) {
 void add_list(const std::vector<VtkListStep>& list, VtkSteps& into) {
   int others = 0;
   for (const VtkListStep& step : list) {
-    std::vector<Grid> parts;
+    std::vector<GridPointer> parts;
     for (const std::string& file : step.files) parts.push_back(read_part(file, others));
     into.add(step.files.front(), *joined(step.files.front(), parts), step.time);
   }
@@ -205,11 +205,11 @@ std::optional<std::string> exodus_displacement(vtkExodusIIReader& reader) {
 }
 
 /// A copy of the first grid with the cells of all, whose points are the same: those of the file.
-Grid with_shared_points(const std::string& path, const std::vector<Grid>& blocks) {
-  const Grid all = joined(path, blocks);
+GridPointer with_shared_points(const std::string& path, const std::vector<GridPointer>& blocks) {
+  const GridPointer all = joined(path, blocks);
   if (blocks.size() == 1) return all;
   const vtkIdType points = blocks.front()->GetNumberOfPoints();
-  for (const Grid& block : blocks) {
+  for (const GridPointer& block : blocks) {
     if (block->GetNumberOfPoints() != points) check_grid(path, nullptr);
   }
   const auto shared = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -257,7 +257,7 @@ ImportedMesh read_exodus(const std::string& path, MeshImportOptions options) {
     const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
     if (!is_good || reader->GetOutput() == nullptr) check_grid(path, nullptr);
     others = 0;
-    const Grid grid = with_shared_points(path, grids_of(*reader->GetOutput(), others));
+    const GridPointer grid = with_shared_points(path, grids_of(*reader->GetOutput(), others));
     steps.add(path, *grid, count > 0 ? std::optional(times[step]) : std::nullopt);
   }
   add_other_blocks(others, steps.mesh());

@@ -14,9 +14,8 @@
 #include <utility>
 
 namespace tetwarp {
-namespace {
-/// Nothing for arrays of bits.
-std::optional<PixelType> type_of(vtkDataArray& array) {
+
+std::optional<PixelType> vtk_pixel_type(vtkDataArray& array) {
   const int type = array.GetDataType();
   if (type == VTK_FLOAT) return PixelType::float32;
   if (type == VTK_DOUBLE) return PixelType::float64;
@@ -35,6 +34,7 @@ std::optional<PixelType> type_of(vtkDataArray& array) {
   }
 }
 
+namespace {
 /// The given rows of an array; nothing when a VTKHDF file cannot hold it.
 std::optional<MeshArray> rows_of(vtkDataArray* array,
                                  const std::string& name,
@@ -42,7 +42,7 @@ std::optional<MeshArray> rows_of(vtkDataArray* array,
                                  vtkIdType tuples,
                                  const std::vector<std::int64_t>& rows) {
   if (array == nullptr || array->GetNumberOfTuples() != tuples || !is_free_name(name)) return {};
-  const std::optional<PixelType> type = type_of(*array);
+  const std::optional<PixelType> type = vtk_pixel_type(*array);
   const int components = array->GetNumberOfComponents();
   if (!type || components < 1 || components > 9) return {};
   MeshArray kept{name, is_of_cells, *type, components, {}};

@@ -1,14 +1,18 @@
 /// @file mesh_vtk_arrays.hpp
-/// Arrays of VTK's unstructured grids.
+/// Arrays of VTK's grids.
 #pragma once
 #include <optional>
 #include <string>
 
 #include "io/volume/mesh_arrays.hpp"
 
+class vtkDataArray;
 class vtkUnstructuredGrid;
 
 namespace tetwarp {
+
+/// The type of the numbers of an array; nothing of arrays of bits.
+std::optional<PixelType> vtk_pixel_type(vtkDataArray& array);
 
 /// Adds the arrays of points and kept cells, and the numbers of the cells; names arrays that cannot
 /// be kept.

@@ -60,10 +60,11 @@ struct VolumeHeader {
   std::vector<std::string> not_read;
   /// What the header of a NIfTI file holds beyond grid, samples and NiftiFacts, by its name.
   std::vector<std::string> left_out = {};
-  std::vector<double> times;  ///< one per step; empty: a static file
+  std::vector<std::string> notes = {};  ///< facts that a user should know, one line each
+  std::vector<double> times;            ///< one per step; empty: a static file
 };
 
-/// Choices for NIfTI files; others ignore them.
+/// Choices for NIfTI files and DICOM series; others ignore them.
 struct VolumeReadOptions {
   Axes axes = Axes::ras;  ///< of the components in the file, as of read_nifti()
   /// A file, which need not exist. In its folder a step of a gzip file is unpacked before regions
@@ -72,11 +73,14 @@ struct VolumeReadOptions {
   /// Arrays of floats hold labels: they are read as int32, and a sample that is no whole number is
   /// an error. For files of every format.
   bool are_labels = false;
+  /// Of a DICOM folder: the UID of the series; empty: the only one.
+  std::string series = {};
 };
 
-/// Reads the header of a volume file: VTKHDF ImageData, NIfTI, NRRD, MetaImage, or an image of
-/// FreeSurfer, by its content. The array of all but the first is called `values`, and their grids
-/// are in RAS; the steps of a series have times in seconds, where the header names a unit of time.
+/// Reads the header of a volume file: VTKHDF ImageData, .vti, NIfTI, NRRD, MetaImage, an image of
+/// FreeSurfer, or the DICOM series in a folder, by its content. The array of all but the first two
+/// is called `values`, and their grids are in RAS; the steps of a series have times in seconds,
+/// where the header names a unit of time.
 TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path,
                                                   const VolumeReadOptions& options = {});
 
@@ -222,7 +226,8 @@ enum class ChunkShape {
 
 /// Writes a volume file region by region: a static one, or a temporal one step by step. A name that
 /// ends in .nii or .nii.gz is written as NIfTI, of one array, along the axes of its NiftiFacts; one
-/// of has_image_name() in its format; any other as VTKHDF ImageData. Blocks and series of NIfTI,
+/// of has_image_name() in its format, .vti as VTK's XML image of one step; any other as VTKHDF
+/// ImageData. Blocks and series of NIfTI,
 /// and series and packed files of other images take their space on the disk twice until they are
 /// finished.
 class TETWARP_IO_EXPORT BlockVolumeWriter {
@@ -286,7 +291,8 @@ enum class FileKind {
   hdf5,             ///< any other HDF5 file, also a damaged one
   nifti,            ///< NIfTI-1 or NIfTI-2, plain or gzip; also either file of a pair
   analyze,          ///< Analyze 7.5, header or samples
-  image,            ///< NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd) or FreeSurfer (.mgh, .mgz)
+  image,            ///< NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), FreeSurfer (.mgh, .mgz), .vti,
+                    ///< DICOM; also a folder, which may hold a DICOM series
   unknown
 };
 template <>
@@ -295,8 +301,11 @@ TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of();
 /// True for names of NIfTI images that can be written: .nii and .nii.gz.
 TETWARP_IO_EXPORT bool has_nifti_name(const std::string& path);
 
-/// True for other names of images that can be written: .nrrd, .mha, .mhd, .mgh and .mgz.
+/// True for other names of images of one array that can be written: .nrrd, .mha, .mhd, .mgh, .mgz.
 TETWARP_IO_EXPORT bool has_image_name(const std::string& path);
+
+/// True for names of VTK's XML images: .vti.
+TETWARP_IO_EXPORT bool has_vtk_image_name(const std::string& path);
 
 /// The kind of a file, from its content. Throws IoError only when the file cannot be opened.
 TETWARP_IO_EXPORT FileKind kind_of(const std::string& path);

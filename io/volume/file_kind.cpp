@@ -3,6 +3,7 @@
 #include <string>
 #include <tetwarp/io.hpp>
 
+#include "io/child/image_kind.hpp"
 #include "io/files/extension.hpp"
 #include "io/files/numbered_files.hpp"
 #include "io/h5/h5.hpp"
@@ -40,6 +41,7 @@ bool is_analyze(const std::string& header_path, const NiftiStart& start) {
 
 FileKind kind_of(const std::string& path) {
   if (is_pattern(path)) return FileKind::unknown;  // of meshes, which their names tell
+  if (is_foreign_image(path)) return FileKind::image;
   const h5::Silence silence;
   const std::string header_path = nifti_header_path(path);
   const NiftiStart start = read_nifti_start(header_path);

@@ -2,6 +2,8 @@
 /// Readers of volume files. The content of a file, not its name, decides its format.
 #include <tetwarp/io.hpp>
 
+#include "io/child/foreign_source.hpp"
+#include "io/child/image_kind.hpp"
 #include "io/files/volume_source.hpp"
 #include "io/h5/h5.hpp"
 #include "io/h5/h5_attribute.hpp"
@@ -21,9 +23,10 @@ bool is_nifti(const std::string& path) {
 
 VolumeHeader read_volume_header(const std::string& path, const VolumeReadOptions& options) {
   const h5::Silence silence;
-  VolumeHeader header = is_nifti(path)   ? read_nifti_volume_header(path, options)
-                        : is_image(path) ? read_image_volume_header(path)
-                                         : read_vtkhdf_header(path);
+  VolumeHeader header = is_foreign_image(path) ? read_foreign_volume_header(path, options)
+                        : is_nifti(path)       ? read_nifti_volume_header(path, options)
+                        : is_image(path)       ? read_image_volume_header(path)
+                                               : read_vtkhdf_header(path);
   for (ArrayHeader& array : header.arrays) {
     if (options.are_labels && !is_integer(array.type)) array.type = PixelType::int32;
   }
@@ -39,9 +42,10 @@ VolumeReader::VolumeReader(const std::string& path,
                            std::int64_t step,
                            const VolumeReadOptions& options) {
   const h5::Silence silence;
-  state_.reset(new State{is_nifti(path)   ? open_nifti_source(path, array, step, options)
-                         : is_image(path) ? open_image_source(path, array, step, options)
-                                          : open_vtkhdf_source(path, array, step)});
+  state_.reset(new State{is_foreign_image(path) ? open_foreign_source(path, array, step, options)
+                         : is_nifti(path)       ? open_nifti_source(path, array, step, options)
+                         : is_image(path)       ? open_image_source(path, array, step, options)
+                                                : open_vtkhdf_source(path, array, step)});
   std::unique_ptr<VolumeSource>& source = state_->source;
   if (options.are_labels && !is_integer(source->array().type)) {
     source = std::make_unique<LabelSource>(path, std::move(source));
@@ -94,6 +98,7 @@ Volume read_volume(const std::string& path,
 std::optional<std::string> read_fingerprint(const std::string& path) {
   const h5::Silence silence;
   try {
+    if (is_foreign_image(path)) return std::nullopt;
     if (is_nifti(path)) {
       const std::string fingerprint = read_nifti_header(path).fingerprint;
       return fingerprint.empty() ? std::nullopt : std::optional(fingerprint);

@@ -6,6 +6,7 @@
 #include <tetwarp/io.hpp>
 
 #include "io/image/image_write.hpp"
+#include "io/image/vti_write.hpp"
 #include "io/nifti/nifti_write.hpp"
 #include "io/vtkhdf/vtkhdf_image.hpp"
 
@@ -144,6 +145,10 @@ BlockVolumeWriter::BlockVolumeWriter(const std::string& path,
   if (has_image_name(path)) {
     check_compression(path, options);
     state_.reset(new State{make_image_sink(path, grid, arrays, options, is_temporal)});
+    return;
+  }
+  if (has_vtk_image_name(path)) {
+    state_.reset(new State{make_vti_sink(path, grid, arrays, options, is_temporal)});
     return;
   }
   const std::vector<Edges> edges =

@@ -10,63 +10,52 @@
 
 namespace tetwarp {
 
-/// From output voxels to positions in the source's index space: an affine map, to which a
-/// displacement may be added.
+/// From output voxels to positions in the source's index space: an affine map, to which the
+/// displacement of a field on the output's grid may be added; or transforms that follow each other.
 struct ResampleMap {
   IndexAffine to_source;            ///< output index to source index, without displacements
-  FieldView field;                  ///< displacements of one field
-  View<const TransformLink> links;  ///< or of transforms that follow each other; size 0: none
-  IndexAffine to_world;             ///< output index to world, for `links`
-  bool is_field_grid;               ///< the field is on the output's grid
-  IndexAffine to_field;             ///< output index to field index
+  FieldView field;                  ///< on the output's grid
   double from_world[3][3];          ///< a vector of the world in source voxels
-  bool only_in_field;               ///< positions beyond a field are beyond the source
+  View<const TransformLink> links;  ///< size 0: none; the first one is a field or a spline
+  IndexAffine to_world;             ///< output index to world, for `links`
+  IndexAffine to_first;             ///< output index to where the first link is applied [world]
+  IndexAffine to_first_index;       ///< the same in the index space of its grid
+  bool only_in_field;               ///< positions beyond a field or spline are beyond the source
 
-  TETWARP_HD bool has_displacements() const { return field.vectors != nullptr || links.size > 0; }
-
-  /// The displacement of a voxel, where there are displacements.
-  /// @returns false for background
-  TETWARP_HD bool field_vector(std::int64_t i,
-                               std::int64_t j,
-                               std::int64_t k,
-                               double* vector) const {
-    if (is_field_grid) {
-      const float* const v = field.at(i, j, k);
-      for (int axis = 0; axis < 3; ++axis) vector[axis] = static_cast<double>(v[axis]);
-      return true;
-    }
-    const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
-                             static_cast<double>(k)};
-    if (links.size > 0) return link_vector(voxel, vector);
-    double index[3];
-    to_field.map(voxel, index);
-    return field.sample(index, vector) || !only_in_field;
-  }
-
-  /// The displacement by `links`.
-  TETWARP_HD bool link_vector(const double* voxel, double* vector) const {
-    double start[3], x[3];
-    to_world.map(voxel, start);
-    for (int axis = 0; axis < 3; ++axis) x[axis] = start[axis];
-    bool is_inside = true;
-    for (std::int64_t n = 0; n < links.size; ++n) is_inside = links[n].move(x) && is_inside;
-    for (int axis = 0; axis < 3; ++axis) vector[axis] = x[axis] - start[axis];
-    return is_inside || !only_in_field;
-  }
+  TETWARP_HD bool has_field() const { return field.vectors != nullptr; }
 
   /// @returns false for background
   TETWARP_HD bool position(std::int64_t i, std::int64_t j, std::int64_t k, double* x) const {
     const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
                              static_cast<double>(k)};
     to_source.map(voxel, x);
-    if (!has_displacements()) return true;
     double vector[3];
-    if (!field_vector(i, j, k, vector)) return false;
+    if (links.size > 0) {
+      if (!set_vector(voxel, vector)) return false;
+    } else if (has_field()) {
+      const float* const v = field.at(i, j, k);
+      for (int axis = 0; axis < 3; ++axis) vector[axis] = static_cast<double>(v[axis]);
+    } else {
+      return true;
+    }
     for (int row = 0; row < 3; ++row) {
       const double* const m = from_world[row];
       x[row] += m[0] * vector[0] + m[1] * vector[1] + m[2] * vector[2];
     }
     return true;
+  }
+
+ private:
+  /// The displacement by `links`. @returns false for background
+  TETWARP_HD bool set_vector(const double* voxel, double* vector) const {
+    double start[3], x[3], index[3];
+    to_world.map(voxel, start);
+    to_first.map(voxel, x);
+    to_first_index.map(voxel, index);
+    bool is_inside = links[0].move_at(index, x);
+    for (std::int64_t n = 1; n < links.size; ++n) is_inside = links[n].move(x) && is_inside;
+    for (int axis = 0; axis < 3; ++axis) vector[axis] = x[axis] - start[axis];
+    return is_inside || !only_in_field;
   }
 };
 

@@ -68,6 +68,11 @@ struct GridAxes {
   bool are_same;         ///< both grids have the same axes
 };
 
+/// Volume of a voxel of the source over that of a voxel of the output.
+TETWARP_HD double voxel_ratio_of(const GridAxes& axes) {
+  return axes.are_same ? 1.0 : fabs(determinant(axes.source) * determinant(axes.output_index));
+}
+
 /// Gradient of the rest position by the deformed one: the inverse of the deformation gradient.
 /// Exactly the identity for a whole-voxel shift between grids of the same axes.
 /// @pre the tetrahedron is regular or inverted

@@ -62,6 +62,15 @@ struct FieldView {
   }
 };
 
+/// Weights of the four coefficients around a position, t from the second one.
+TETWARP_HD void set_cubic_weights(double t, double* weights) {
+  const double s = 1 - t;
+  weights[0] = s * s * s / 6;
+  weights[1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
+  weights[2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
+  weights[3] = t * t * t / 6;
+}
+
 /// Vectors of a cubic B-spline with uniform knots.
 struct SplineView {
   const double* coefficients = nullptr;  ///< [k][j][i][3], world; null: there is no spline
@@ -82,11 +91,7 @@ struct SplineView {
       const double near = min_of(max_of(index[axis], 1.0), last);
       const std::int64_t lower = min_of(static_cast<std::int64_t>(near), dims[axis] - 3);
       first[axis] = lower - 1;
-      const double t = near - static_cast<double>(lower), s = 1 - t;
-      weights[axis][0] = s * s * s / 6;
-      weights[axis][1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
-      weights[axis][2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
-      weights[axis][3] = t * t * t / 6;
+      set_cubic_weights(near - static_cast<double>(lower), weights[axis]);
     }
     for (int c = 0; c < 4; ++c) {
       for (int b = 0; b < 4; ++b) {
@@ -112,20 +117,30 @@ struct TransformLink {
   FieldView field;
   SplineView spline;
 
+  TETWARP_HD bool is_affine() const {
+    return field.vectors == nullptr && spline.coefficients == nullptr;
+  }
+
   /// @returns false where x is beyond a field or a spline, which then leaves it where it is
   TETWARP_HD bool move(double* x) const {
-    if (field.vectors == nullptr && spline.coefficients == nullptr) {
+    if (is_affine()) {
       const double from[3] = {x[0], x[1], x[2]};
       affine.map(from, x);
       return true;
     }
-    double index[3], vector[3];
+    double index[3];
     for (int row = 0; row < 3; ++row) {
       index[row] = 0;
       for (int axis = 0; axis < 3; ++axis) {
         index[row] += to_index.linear[row][axis] * (x[axis] - to_index.origin[axis]);
       }
     }
+    return move_at(index, x);
+  }
+
+  /// move() of a point at an index position of the grid. @pre not is_affine()
+  TETWARP_HD bool move_at(const double* index, double* x) const {
+    double vector[3];
     const bool is_inside =
         field.vectors != nullptr ? field.sample(index, vector) : spline.sample(index, vector);
     for (int axis = 0; axis < 3; ++axis) x[axis] += vector[axis];

@@ -33,12 +33,12 @@ def command():
     if not program:
         pytest.skip("no command tetwarp on PATH or in TETWARP_COMMAND")
 
-    def run(*words):
+    def run(*words, status=0):
         done = subprocess.run(
             [program, *map(str, words)], text=True, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, check=False,
         )
-        assert done.returncode == 0, done.stdout
+        assert done.returncode == status, done.stdout
         return done.stdout
 
     return run

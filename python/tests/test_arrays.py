@@ -141,7 +141,7 @@ def _warp(source, mesh, **changes):
     ("outputs", ("mask", "hull"), "outputs: 'hull' is not one of mask, owner"),
     ("out", np.zeros((3, 3, 3), np.float32), r"out: expected shape \(20, 24, 32\) of float32"),
     ("out", np.zeros((20, 24, 32)), "out: expected .* of float32, got .* of float64"),
-    ("out", [1], "out: expected a numpy array of float32"),
+    ("out", [1], "out: expected an array of float32 to write to"),
     ("out", np.zeros((20, 24, 64), np.float32)[..., ::2], "out: expected an array in C order"),
     ("spacing", (1, 1, 1), "volume: a Volume has a grid; leave out spacing"),
     ("threads", -1, "threads"),

@@ -157,3 +157,27 @@ def test_contact_problems_have_the_impulses_of_the_command(tmp_path, command):
     assert solution.converged
     stored = tetwarp.read(tmp_path / "solution.h5").impulse_guess  # of the file's solution
     assert np.array_equal(stored, solution.impulse.ravel())
+
+
+def test_proofs_are_those_of_the_command(tmp_path, command):
+    points, triangles = tetwarp.isosurface(tetwarp.phantom("orange", (12, 12, 12)), 0.5)
+    size, random = np.ptp(points, axis=0)[0], np.random.default_rng(6)
+    for way, verdict, status in ((0.2, "free", 0), (0.6, "meets", 3)):
+        other = points + (1.5 * size, 0, 0)
+        ends = [points + (way * size, 0, 0), other - (way * size, 0, 0)]
+        if verdict == "meets":  # also triangles of one surface, where neighbors cross
+            ends[1] = ends[1] + 0.01 * size * random.random(points.shape)
+        for name, place in (("a", points), ("b", other), ("c", ends[0]), ("d", ends[1])):
+            tetwarp.write(tmp_path / f"{name}.vtkhdf", tetwarp.Surface(place, triangles))
+        a, b, c, d = (tmp_path / f"{name}.vtkhdf" for name in "abcd")
+        command("certify", a, b, "--to", c, d, "--report", tmp_path / "proof.json", status=status)
+
+        found = tetwarp.certify([(points, ends[0], triangles), (other, ends[1], triangles)])
+
+        assert found.verdict == verdict
+        (step,) = json.loads((tmp_path / "proof.json").read_text())["steps"]
+        assert (step["verdict"], step["near_pairs"]) == (verdict, found.near_pairs)
+        assert [pair["triangles"] for pair in step["pairs"]] == found.triangles.tolist()
+        assert [pair["surfaces"] for pair in step["pairs"]] == found.surfaces.tolist()
+        assert [[pair["from"], pair["until"]] for pair in step["pairs"]] == found.times.tolist()
+        assert bool(len(found.times)) == (verdict == "meets")

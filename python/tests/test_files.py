@@ -111,6 +111,21 @@ def test_surfaces_come_back(volume, mesh, tmp_path):
         tetwarp.read(tmp_path / "skin.vtkhdf").mesh  # triangles are no mesh to warp by
 
 
+def test_surfaces_of_other_programs_are_read(tmp_path):
+    """By tetwarp-read, which the module finds beside itself."""
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\n")
+
+    try:
+        surface = tetwarp.read(tmp_path / "a.obj")
+    except tetwarp.IoError as error:
+        if "this build cannot read" in str(error):
+            pytest.skip(str(error))
+        raise
+
+    assert surface.points.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert surface.triangles.tolist() == [[0, 2, 1], [0, 1, 3]]
+
+
 def test_displacement_fields_are_written_for_itk(mesh, twisted, volume, tmp_path):
     field = tetwarp.displacement_field(*mesh, twisted, reference=volume)
 

@@ -19,6 +19,7 @@ from ._certify import Certificate, Collisions, certify, find_collisions
 from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
 from ._core import Cancelled, CudaError, IoError, available_backends
 from ._core import version as __version__
+from ._dicom import read_dicom, to_rtdose
 from ._fields import (
     Field,
     displacement_field,
@@ -32,16 +33,20 @@ from ._grid import Grid
 from ._mesh import Mesh, Surface, boundary_surface, deform, isosurface, lattice_mesh
 from ._operator import WarpOperator
 from ._simulate import Contacts, Simulator, StepRecord, shipped_scene, shipped_scenes
+from ._tracker import AdhesionStep, ContactRecords, ContactTracker, TrackedContacts
 from ._volume import Volume, phantom
 from ._warp import Warper, WarpResult, warp
 
 __all__ = [
+    "AdhesionStep",
     "Cancelled",
     "Certificate",
     "Collisions",
     "ContactProblem",
+    "ContactRecords",
     "ContactSolution",
     "ContactSolver",
+    "ContactTracker",
     "Contacts",
     "Csr",
     "CudaError",
@@ -53,6 +58,7 @@ __all__ = [
     "Simulator",
     "StepRecord",
     "Surface",
+    "TrackedContacts",
     "Volume",
     "VolumeHeader",
     "WarpOperator",
@@ -72,6 +78,7 @@ __all__ = [
     "phantom",
     "rasterize",
     "read",
+    "read_dicom",
     "read_header",
     "shipped_scene",
     "shipped_scenes",
@@ -80,6 +87,7 @@ __all__ = [
     "to_meshio",
     "to_nibabel",
     "to_pyvista",
+    "to_rtdose",
     "to_sitk",
     "to_sitk_transform",
     "transform_points",

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+import sys
+from typing import Any, Callable, Sequence
 
 import numpy as np
+
+from . import _core
 
 PIXEL_TYPES = (
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64",
@@ -14,12 +17,58 @@ _NO_CELLS = {4: np.empty((0, 4), np.int32), 8: np.empty((0, 8), np.int32)}
 
 def describe(array: np.ndarray) -> str:
     """Shape and type of an array, for messages."""
-    return f"shape {array.shape} of {array.dtype}"
+    return f"shape {tuple(array.shape)} of {array.dtype}"
+
+
+#: Memory that the host reads, by the numbers of DLPack: plain, page-locked by CUDA or by ROCm.
+_HOST_MEMORY = (1, 3, 11)
+
+
+def _is_foreign(value: Any) -> bool:
+    """Whether it is an array of another library, which DLPack shows."""
+    return hasattr(value, "__dlpack__") and not isinstance(value, np.ndarray)
+
+
+def _check_host(value: Any, name: str) -> None:
+    kind, number = value.__dlpack_device__()
+    if int(kind) not in _HOST_MEMORY:
+        raise ValueError(
+            f"{name}: expected an array in memory of the host, got one of device {int(number)} "
+            f"(DLPack type {int(kind)}); copy it to the host, such as by .cpu() or .get()"
+        )
+
+
+def array_of(value: Any, name: str) -> np.ndarray:
+    """An array of another library (PyTorch, JAX, CuPy) in place, by DLPack; anything else as NumPy
+    takes it.
+    """
+    if not _is_foreign(value):
+        return np.asarray(value)
+    _check_host(value, name)
+    try:
+        return np.from_dlpack(value)
+    except (BufferError, RuntimeError, TypeError) as error:
+        raise ValueError(f"{name}: cannot be read by DLPack: {error}") from None
+
+
+def _same(array: np.ndarray) -> np.ndarray:
+    return array
+
+
+def maker_of(value: Any) -> Callable[[np.ndarray], Any]:
+    """What makes an array of NumPy one of the library of `value`, in the same memory."""
+    if not _is_foreign(value):
+        return _same
+    if hasattr(value, "__array_namespace__"):
+        namespace = value.__array_namespace__()
+    else:
+        namespace = sys.modules[type(value).__module__.partition(".")[0]]
+    return getattr(namespace, "from_dlpack", _same)
 
 
 def samples_of(value: Any, name: str) -> np.ndarray:
     """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.dtype.newbyteorder("=").name not in PIXEL_TYPES:
         hint = "; use .view(numpy.uint8)" if array.dtype == bool else ""
         raise ValueError(
@@ -57,8 +106,9 @@ def nodes_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
 
 def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Positions of shape (n, 3), float64 in C order; copied only if they are not."""
+    array = array_of(value, name) if _is_foreign(value) else value
     try:
-        array = np.asarray(value)
+        array = np.asarray(array)
         if not np.can_cast(array.dtype, np.float64, "same_kind"):
             raise TypeError
         array = np.ascontiguousarray(array, dtype=np.float64)
@@ -83,7 +133,7 @@ def _indices_of(array: np.ndarray, name: str, node_count: int) -> np.ndarray:
 
 
 def _cells_of_one_kind(value: Any, name: str, node_count: int) -> np.ndarray:
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.ndim != 2 or array.shape[1] not in (4, 8):
         raise ValueError(
             f"{name}: expected shape (m, 4) for tetrahedra or (m, 8) for hexahedra, "
@@ -94,7 +144,7 @@ def _cells_of_one_kind(value: Any, name: str, node_count: int) -> np.ndarray:
 
 def triangles_of(value: Any, name: str, node_count: int) -> np.ndarray:
     """Triangles (m, 3) as int32."""
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name}: expected shape (m, 3), got {array.shape}")
     return _indices_of(array, name, node_count)
@@ -118,8 +168,9 @@ def cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.nda
 
 def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Numbers as a flat float64 array in C order."""
+    plain = array_of(value, name) if _is_foreign(value) else value
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64).reshape(-1)
+        array = np.ascontiguousarray(plain, dtype=np.float64).reshape(-1)
     except (TypeError, ValueError):
         raise ValueError(f"{name}: expected an array of numbers") from None
     if count is not None and array.size != count:
@@ -136,10 +187,18 @@ def vector_of(value: Any, name: str) -> tuple[float, float, float]:
 
 
 def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarray:
-    """An array to write to: exactly of this shape and type, writable, in C order."""
+    """An array to write to: exactly of this shape and type, writable, in C order; of another
+    library its memory, as an array of NumPy.
+    """
     shape, dtype = tuple(shape), np.dtype(dtype)
+    if _is_foreign(value):
+        _check_host(value, name)
+        try:
+            value = _core.writable_array(value)
+        except (TypeError, BufferError, RuntimeError) as error:
+            raise ValueError(f"{name}: cannot be written to by DLPack: {error}") from None
     if not isinstance(value, np.ndarray):
-        raise ValueError(f"{name}: expected a numpy array of {dtype} to write to")
+        raise ValueError(f"{name}: expected an array of {dtype} to write to, of NumPy or by DLPack")
     if value.shape != shape or value.dtype != dtype:
         raise ValueError(f"{name}: expected shape {shape} of {dtype}, got {describe(value)}")
     if not value.flags.c_contiguous:

@@ -20,21 +20,23 @@ from ._mesh import Mesh, joined_cells
 from ._volume import Volume
 
 
-def _package(name: str, function: str, pip: str) -> Any:
+def package(name: str, function: str, pip: str) -> Any:
+    """A module, or an ImportError that tells how to install it."""
     try:
         return importlib.import_module(name)
     except ImportError:
         raise ImportError(f"{function}: expected {pip}; python3 -m pip install {pip}") from None
 
 
-def _signs(axes: str, native: str) -> np.ndarray:
+def signs_of(axes: str, native: str) -> np.ndarray:
     """What turns x y z of one world into those of the other."""
     if axes not in ("RAS", "LPS"):
         raise ValueError(f"axes: expected 'RAS' or 'LPS', got {axes!r}")
     return np.array((1.0, 1, 1) if axes == native else (-1.0, -1, 1))
 
 
-def _turned(grid: Grid, signs: np.ndarray) -> Grid:
+def turned(grid: Grid, signs: np.ndarray) -> Grid:
+    """A grid in the other world."""
     return Grid(grid.shape, grid.spacing, tuple(signs * grid.origin),
                 tuple(map(tuple, signs[:, None] * np.array(grid.direction))))
 
@@ -61,11 +63,11 @@ def volume_from(image: Any, *, axes: str) -> Volume:
         array = np.asarray(image.dataobj)
         if array.ndim == 5 and array.shape[3] == 1:  # vectors of NIfTI
             array = array[:, :, :, 0]
-        return Volume(_rows_first(array), _turned(reference_grid(image), _signs(axes, "RAS")))
+        return Volume(_rows_first(array), turned(reference_grid(image), signs_of(axes, "RAS")))
     if hasattr(image, "GetPixelIDTypeAsString"):
-        sitk = _package("SimpleITK", "volume_from", "SimpleITK")
+        sitk = package("SimpleITK", "volume_from", "SimpleITK")
         return Volume(sitk.GetArrayFromImage(image),
-                      _turned(reference_grid(image), _signs(axes, "LPS")))
+                      turned(reference_grid(image), signs_of(axes, "LPS")))
     raise ValueError(
         f"image: expected an image of nibabel or SimpleITK, got {type(image).__name__}"
     )
@@ -79,8 +81,8 @@ def to_nibabel(volume: Volume, *, axes: str) -> Any:
     ImportError
         nibabel is not installed.
     """
-    nibabel = _package("nibabel", "to_nibabel", "nibabel")
-    grid = _turned(volume.grid, _signs(axes, "RAS"))
+    nibabel = package("nibabel", "to_nibabel", "nibabel")
+    grid = turned(volume.grid, signs_of(axes, "RAS"))
     array = volume.array.swapaxes(0, 2)
     return nibabel.Nifti1Image(array, grid.affine, dtype=array.dtype)
 
@@ -101,8 +103,8 @@ def to_sitk(volume: Volume, *, axes: str) -> Any:
     ImportError
         SimpleITK is not installed.
     """
-    sitk = _package("SimpleITK", "to_sitk", "SimpleITK")
-    return _sitk_image(sitk, volume.array, _turned(volume.grid, _signs(axes, "LPS")))
+    sitk = package("SimpleITK", "to_sitk", "SimpleITK")
+    return _sitk_image(sitk, volume.array, turned(volume.grid, signs_of(axes, "LPS")))
 
 
 def to_sitk_transform(field: Field, *, axes: str) -> Any:
@@ -116,11 +118,11 @@ def to_sitk_transform(field: Field, *, axes: str) -> Any:
     ValueError
         `field` has not three components.
     """
-    sitk = _package("SimpleITK", "to_sitk_transform", "SimpleITK")
+    sitk = package("SimpleITK", "to_sitk_transform", "SimpleITK")
     if field.values.ndim != 4 or field.values.shape[3] != 3:
         raise ValueError(f"field: expected displacements, (z, y, x, 3), got {field.values.shape}")
-    signs = _signs(axes, "LPS")
-    image = _sitk_image(sitk, field.values * signs, _turned(field.grid, signs))
+    signs = signs_of(axes, "LPS")
+    image = _sitk_image(sitk, field.values * signs, turned(field.grid, signs))
     return sitk.DisplacementFieldTransform(image)
 
 
@@ -133,7 +135,7 @@ def to_pyvista(value: Any, deformed: Any = None) -> Any:
     ImportError
         PyVista is not installed.
     """
-    pyvista = _package("pyvista", "to_pyvista", "pyvista")
+    pyvista = package("pyvista", "to_pyvista", "pyvista")
     if isinstance(value, Volume):
         grid = value.grid
         image = pyvista.ImageData(dimensions=grid.shape[::-1], spacing=grid.spacing,
@@ -159,7 +161,7 @@ def to_meshio(mesh: Any, **data: Any) -> Any:
     ImportError
         meshio is not installed.
     """
-    meshio = _package("meshio", "to_meshio", "meshio")
+    meshio = package("meshio", "to_meshio", "meshio")
     points, tets, hexes = _parts(mesh)
     cells = [(kind, part) for kind, part in (("tetra", tets), ("hexahedron", hexes)) if len(part)]
     return meshio.Mesh(points, cells, **data)

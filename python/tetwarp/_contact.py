@@ -248,9 +248,13 @@ class ContactSolver:
         progress: Callable[[float, int], Any] | None = None,
     ) -> ContactSolution:
         """Solves one problem; see solve_contacts()."""
-        *arrays, text = self._solver.solve(problem._core(), progress)
+        impulse, velocity, body_velocity, bilateral, rolling, text = self._solver.solve(
+            problem._core(), progress
+        )
         report = json.loads(text)
-        return ContactSolution(*arrays, report["status"], report)
+        return ContactSolution(
+            impulse, velocity, body_velocity, bilateral, rolling, report["status"], report
+        )
 
 
 def solve_contacts(

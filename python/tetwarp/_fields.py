@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, nodes_of, number_of, points_of
+from ._arrays import cells_of, maker_of, nodes_of, number_of, points_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._volume import Volume
@@ -234,7 +234,7 @@ def transform_points(
 
     Returns
     -------
-    (k, 3) float64, or a pair with the owners
+    (k, 3) float64, or a pair with the owners; arrays of the library of `points`
 
     Raises
     ------
@@ -252,4 +252,5 @@ def transform_points(
     grid = None if reference is None else reference_grid(reference)._core()
     moved, owners = _core.map_points(where, grid, start, tets, hexes, end, inverse)
     moved[owners < 0] = number_of(default_value, "default_value")
-    return (moved, owners) if return_owners else moved
+    make = maker_of(points)
+    return (make(moved), make(owners)) if return_owners else make(moved)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, describe, nodes_of, out_of
+from ._arrays import array_of, cells_of, describe, maker_of, nodes_of, out_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 
@@ -93,7 +93,7 @@ class WarpOperator:
     def _mask_of(self, mask: Any) -> np.ndarray:
         if mask is None:
             return _NO_MASK
-        array = np.asarray(mask)
+        array = array_of(mask, "mask")
         if array.shape != self._output.shape or array.dtype.kind not in "biu":
             raise ValueError(
                 f"mask: expected bool of shape {self._output.shape}, got {describe(array)}"
@@ -163,14 +163,15 @@ class WarpOperator:
         >>> W.node_gradient(volume, W.forward(volume)).shape == rest.shape
         True
         """
-        return self._core.node_gradient(
+        return maker_of(x)(self._core.node_gradient(
             self._numbers(x, "x", self._source), self._numbers(y, "y", self._output)
-        )
+        ))
 
     @staticmethod
     def _numbers(value: Any, name: str, grid: Grid) -> np.ndarray:
+        plain = array_of(value, name)
         try:
-            array = np.ascontiguousarray(value, dtype=np.float64)
+            array = np.ascontiguousarray(plain, dtype=np.float64)
         except (TypeError, ValueError):
             raise ValueError(f"{name}: expected an array of numbers") from None
         if array.ndim not in (3, 4) or array.shape[:3] != grid.shape or array.size == 0:
@@ -188,4 +189,4 @@ class WarpOperator:
         if out is not None and np.may_share_memory(result, array):
             raise ValueError(f"out: shares memory with {name}")
         call(array, result)
-        return result
+        return maker_of(value)(result) if out is None else out

@@ -9,7 +9,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, describe, nodes_of, number_of, out_of
+from ._arrays import cells_of, describe, maker_of, nodes_of, number_of, out_of
 from ._grid import Grid, grid_from_core, reference_grid
 from ._mesh import Cells
 from ._volume import Volume, volume_of
@@ -32,7 +32,8 @@ EXTRAS: dict[str, tuple[Any, int]] = {
 class WarpResult:
     """What a warp has made.
 
-    volume : the warped samples, (z, y, x) or (z, y, x, c), of the type of the source
+    volume : the warped samples, (z, y, x) or (z, y, x, c), of the type of the source; a tensor or
+        array of the library that the source was of
     grid : of all arrays
     report : counts of voxels and tetrahedra, seconds of the stages, totals, back end
     volumes : one array per source; `volume` is the first
@@ -115,7 +116,7 @@ class Warper:
     Parameters
     ----------
     volume : Volume, or samples of shape (z, y, x) or (z, y, x, c), of 8- to 64-bit integers,
-        float32 or float64; or a list of these on one grid
+        float32 or float64, of NumPy or by DLPack; or a list of these on one grid
     rest : (n, 3) node positions at rest, x y z [world]
     cells : (m, 4) tetrahedra, (m, 8) hexahedra, or a pair of both; integers
     spacing, origin, direction, affine : of the grid of arrays, see Grid
@@ -180,6 +181,8 @@ class Warper:
         threads: int = 0,
     ) -> None:
         sources = _sources_of(volume, spacing, origin, direction, affine)
+        given = list(volume) if isinstance(volume, (list, tuple)) else [volume]
+        self._makers = [maker_of(one) for one in given]
         points = nodes_of(rest, "rest")
         self._arrays = [source.array for source in sources]
         self._names = tuple(source.name for source in sources)
@@ -220,8 +223,9 @@ class Warper:
         Parameters
         ----------
         deformed : (n, 3) positions of the nodes [world]; read in place if float64 in C order
-        out : array to write to, of the shape and type of the output, in C order; for several
-            volumes a list of them. None: new arrays
+        out : array to write to, of the shape and type of the output, in C order, of NumPy or by
+            DLPack; for several volumes a list of them. None: new arrays, of the library of the
+            source
         outputs : further outputs: ``"mask"`` (1 where covered), ``"owner"`` (number of the cell,
             -1: none), ``"displacement"`` (rest position minus voxel's position), ``"jacobian"``
             (det F), ``"gradient"`` (F, row by row), ``"strain"`` (Green-Lagrange, XX YY ZZ XY YZ
@@ -242,11 +246,16 @@ class Warper:
         names = extras_of(outputs, EXTRAS)
         if "forward" in names and not self._is_source_grid:
             raise ValueError("outputs: 'forward' is on the grid of the source; give no reference")
-        volumes = self._outputs(out)
+        arrays = self._outputs(out)
         extras = {name: self._extra(name) for name in names}
-        report = warper.step(positions, volumes, extras, False, progress)
+        report = warper.step(positions, arrays, extras, False, progress)
+        if out is None:
+            volumes = tuple(make(array) for make, array in zip(self._makers, arrays))
+        else:
+            volumes = tuple(out) if isinstance(out, (list, tuple)) else (out,)
+        extras = {name: self._makers[0](array) for name, array in extras.items()}
         return WarpResult(
-            volumes[0], self._grid, report, tuple(volumes), extras, self._names, self._nifti
+            volumes[0], self._grid, report, volumes, extras, self._names, self._nifti
         )
 
     step = __call__
@@ -280,9 +289,9 @@ class Warper:
             raise ValueError(f"out: expected {len(shapes)} arrays, got {len(given)}")
         for number, (array, shape, source) in enumerate(zip(given, shapes, self._arrays)):
             name = "out" if len(given) == 1 else f"out[{number}]"
-            out_of(array, name, shape, source.dtype)
+            given[number] = out_of(array, name, shape, source.dtype)
             others = self._arrays + given[:number]
-            if any(np.may_share_memory(array, other) for other in others):
+            if any(np.may_share_memory(given[number], other) for other in others):
                 raise ValueError(f"{name}: shares memory with a source or another output")
         return given
 

@@ -38,7 +38,7 @@ TEST(Cli, ShowsVersionAndAnExampleInEveryHelp) {
   EXPECT_EQ(version.out, "tetwarp 0.1.0\n");
 
   for (const std::string command :
-       {"warp", "mesh", "deform", "import", "export", "render", "info", "demo"}) {
+       {"warp", "mesh", "deform", "import", "export", "render", "plot", "info", "demo"}) {
     const CommandResult help = run_command(folder, {command, "--help"});
 
     EXPECT_EQ(help.exit_code, 0) << command;

@@ -240,7 +240,7 @@ TEST(BadImages, OutputsThatCannotBe) {
     return more;
   };
   for (const Case& bad : std::vector<Case>{
-           {warp("head.nii.gz", {"out.vti"}), "out.vti: the name of a volume ends in .vtkhdf, .hd"},
+           {warp("head.nii.gz", {"out.tif"}), "out.tif: the name of a volume ends in .vtkhdf, .hd"},
            {warp("head.nii.gz", {"out.gz"}), "out.gz: the name of a volume ends in .vtkhdf, .hdf"},
            {warp("head.nii.gz", {"head.nii.gz", "--steps", "0"}), "head.nii.gz: is also an input"},
            {warp("head.nii.gz", {"folder.nii.gz", "--steps", "0"}), "is a folder; name the file"},

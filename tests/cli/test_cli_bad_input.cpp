@@ -112,7 +112,7 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
            {warp_to("volume.vtkhdf"), "is also an input"},
            {warp_to("./folder.vtkhdf/../mesh.vtkhdf"), "is also an input"},
            {warp_to("folder.vtkhdf"), "is a folder"},
-           {warp_to("out.vti"), ".nrrd, .mha, .mhd, .mgh or .mgz"},
+           {warp_to("out.tif"), ".nrrd, .mha, .mhd, .mgh, .mgz or .vti"},
            {{"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--report",
              "volume.vtkhdf"},
             "is also an input"},
@@ -121,7 +121,7 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
            {{"warp", "volume.vtkhdf", "volume.vtkhdf", "mesh.vtkhdf", "-o", ".", "--steps", "0"},
             "is also an input"},
            {{"mesh", "volume.vtkhdf", "-o", "volume.vtkhdf"}, "is also an input"},
-           {{"export", "volume.vtkhdf", "-o", "out.vti"}, ".nii.gz"},
+           {{"export", "volume.vtkhdf", "-o", "out.tif"}, ".nii.gz"},
            {{"render", "volume.vtkhdf", "-o", "out.jpg"}, ".png"}}) {
     expect_refused(scene, refused, 1);
   }

@@ -281,6 +281,65 @@ TEST_F(Batch, WritesWhatOutputsWereMadeFrom) {
   EXPECT_EQ(facts["output"]["sha256"], sha256_of_file(scene / "jobs/a.vtkhdf"));
 }
 
+/// NRRD files have no fingerprint: the files of --provenance tell what is up to date.
+TEST_F(Batch, SkipsJobsWhoseProvenanceAgrees) {
+  const std::string jobs = batch_of({job("a.nrrd", R"(, "steps": 0)"),
+                                     job("b.vtkhdf", R"(, "filter": "nearest", "steps": "0:2")")});
+  const auto ends = [&](const std::string& list, const std::string& counts, Names more = {}) {
+    more.insert(more.end(), {"--resume", "--provenance"});
+    const CommandResult result = run(list, more);
+    return result.exit_code == 0 && result.out.ends_with(counts + "\n") ? ""
+                                                                        : result.out + result.err;
+  };
+  EXPECT_EQ(run(jobs, {"--provenance"}).exit_code, 0);
+  const std::string whole = text_of(scene / "jobs/a.nrrd");
+
+  EXPECT_EQ(ends(jobs, "0 done, 0 failed, 2 skipped", {"--threads", "1"}), "");
+  EXPECT_EQ(ends(jobs, "0 done, 0 failed, 2 skipped", {"--jobs", "2"}), "");
+  write_text(scene / "jobs/a.nrrd", whole.substr(0, whole.size() - 1));
+  EXPECT_EQ(ends(jobs, "1 done, 0 failed, 1 skipped"), "");
+  EXPECT_EQ(text_of(scene / "jobs/a.nrrd"), whole);
+  std::string other = whole;
+  other.back() = static_cast<char>(other.back() + 1);
+  write_text(scene / "jobs/a.nrrd", other);
+  EXPECT_EQ(ends(jobs, "1 done, 0 failed, 1 skipped"), "");
+  EXPECT_EQ(text_of(scene / "jobs/a.nrrd"), whole);
+  fs::remove(scene / "jobs/b_0001.vtkhdf");
+  EXPECT_EQ(ends(jobs, "1 done, 0 failed, 1 skipped"), "");
+  write_text(scene / "jobs/a.nrrd.json", "{\"output\": 3}");
+  EXPECT_EQ(ends(jobs, "1 done, 0 failed, 1 skipped"), "");
+  EXPECT_EQ(ends(jobs, "2 done, 0 failed, 0 skipped", {"--background", "3"}), "");
+  EXPECT_EQ(ends(jobs, "0 done, 0 failed, 2 skipped", {"--background", "3"}), "");
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({0, 2, 1, 3}), {0, 0.5, 1, 1.5});
+  EXPECT_EQ(ends(jobs, "2 done, 0 failed, 0 skipped", {"--background", "3"}), "");
+}
+
+/// The samples of a pair count, of outputs and of inputs.
+TEST_F(Batch, ComparesSamplesBesideTheirHeader) {
+  const std::string first = batch_of({job("a.mhd", R"(, "steps": 0)")});
+  const std::string both = batch_of(
+      {job("a.mhd", R"(, "steps": 0)"),
+       R"({"volume": "a.mhd", "mesh": "../mesh.vtkhdf", "output": "b.nrrd", "steps": 1})"});
+  EXPECT_EQ(run(first, {"--provenance"}).exit_code, 0);
+  EXPECT_EQ(run(both, {"--provenance"}).exit_code, 0);
+  const auto counts = [&] {
+    const std::string out = run(both, {"--provenance", "--resume"}).out;
+    return out.substr(out.rfind('\n', out.size() - 2) + 1);
+  };
+  const std::string whole = text_of(scene / "jobs/a.raw");
+
+  EXPECT_EQ(counts(), "0 done, 0 failed, 2 skipped\n");
+  write_text(scene / "jobs/a.raw", whole.substr(0, whole.size() / 2) + whole);
+  EXPECT_EQ(counts(), "1 done, 0 failed, 1 skipped\n");
+  EXPECT_EQ(text_of(scene / "jobs/a.raw"), whole);
+  std::string facts = text_of(scene / "jobs/b.nrrd.json");
+  const std::string hash = sha256_of_file(scene / "jobs/a.raw");
+  ASSERT_NE(facts.find(hash), std::string::npos);
+  write_text(scene / "jobs/b.nrrd.json",
+             facts.replace(facts.find(hash), hash.size(), std::string(hash.size(), '0')));
+  EXPECT_EQ(counts(), "1 done, 0 failed, 1 skipped\n");
+}
+
 TEST_F(Batch, NamesThePlaceWhereTheFileIsNoJson) {
   const CommandResult result = run("{\"jobs\": [\n  {\"volume\": }\n]}");
 

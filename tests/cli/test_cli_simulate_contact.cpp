@@ -256,5 +256,47 @@ TEST(SimulateContact, ErrorsOfItsOptions) {
   EXPECT_NE(of_a_body.err.find("'soft'"), std::string::npos) << of_a_body.err;
   EXPECT_EQ(scene.names(), std::vector<std::string>{"scene.json"});
 }
+/// A block that adheres slides over a floor. Its own material, that of the obstacle, of the pair
+/// and of the scene all adhere. @param solver  further keys of the scene
+std::string sliding_scene(const std::string& solver, bool adheres) {
+  const std::string adhesion = R"("adhesion": {"stiffness": 1e6, "energy": 2, "viscosity": 0.01,
+    "bonding_rate": 0.01, "saturation_pressure": 300})";
+  const std::string own = adheres ? "\"contact\": {" + adhesion + "}," : "";
+  const std::string pair =
+      adheres ? R"("pairs": [{"a": "soft", "b": "hill", )" + adhesion + "}]," + adhesion + "," : "";
+  return R"({"tetwarp_scene": 1, "time_step": 0.005, "duration": 0.1,)" + solver +
+         R"("contact": {)" + pair + R"("friction": 0.3},
+    "bodies": [{"name": "soft", "kind": "fem", "shape": {"type": "box", "half": [0.05, 0.05, 0.05]},
+      "lattice": {"cells": [2, 2, 2]}, "material": {"E": 1e5, "nu": 0.3, "density": 1000},)" +
+         own + R"("pose": {"position": [0, 0, 0.0501]}, "velocity": [0.5, 0.3, 0]}],
+    "obstacles": [{"name": "floor",)" +
+         own + R"("plane": {"normal": [0, 0, 1]}},
+      {"name": "hill", "sphere": {"centre": [0, 0, -1.001], "radius": 1}}]})";
+}
+
+TEST(SimulateContact, OptionsStandForLawRuleAndAdhesionOfTheScene) {
+  const SimulateScene scene;
+  const std::string source = R"("solver": {"law": "pyramid", "rule": "restrictive"},)";
+  write_text(scene / "plain.json", sliding_scene("", true));
+  write_text(scene / "source.json", sliding_scene(source, true));
+  write_text(scene / "free.json", sliding_scene("", false));
+  const auto energies = [&](const std::string& file, std::vector<std::string> options) {
+    options.insert(options.begin(), {"simulate", file, "--quiet", "-o", "out"});
+    const CommandResult result = run_command(scene, options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return h5_numbers(scene.in("out", "series.h5"), "energy/total");
+  };
+
+  const Numbers plain = energies("plain.json", {});
+  const Numbers of_source = energies("source.json", {});
+  const Numbers free = energies("free.json", {});
+
+  EXPECT_NE(plain, of_source);
+  EXPECT_NE(plain, free);
+  EXPECT_EQ(energies("plain.json", {"--law", "pyramid", "--rule", "restrictive"}), of_source);
+  EXPECT_EQ(energies("source.json", {"--law", "cone", "--rule", "parallel"}), plain);
+  EXPECT_EQ(energies("plain.json", {"--no-adhesion"}), free);
+}
+
 }  // namespace
 }  // namespace tetwarp::test

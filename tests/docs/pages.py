@@ -15,7 +15,7 @@ class Block:
     line: int  # of its first line, counted from 1
     lines: list = field(default_factory=list)
     not_run: str = ""  # the reason in a comment `<!-- not run: reason -->` above it
-    needs: str = ""  # program or module in a comment `<!-- needs: name -->` above it
+    needs: str = ""  # programs or modules in a comment `<!-- needs: name,name -->` above it
 
     @property
     def text(self):

@@ -2,7 +2,7 @@
 """Runs what the documentation shows: README.md, the other pages at the root and docs/*.md.
 
     run_docs.py extract ROOT FILE    writes the C++ blocks of all pages as one program
-    run_docs.py run ROOT --command FILE --blocks PROGRAM [--mpirun FILE] [--has gmsh] [--has view] [--has vtk]
+    run_docs.py run ROOT --command FILE --blocks PROGRAM [--mpirun FILE] [--has gmsh] [--has view] [--has vtk] [--has gdcm]
                 [--python FILE --package FOLDER]
 
 Blocks of a page run in order in one empty folder, which holds head.nii.gz and labels.nii.gz; blocks
@@ -25,7 +25,7 @@ from small_images import write_images
 
 MOST_NOT_RUN = 10
 LARGEST_PICTURE = 150 * 1024  # bytes
-LIBRARIES = ("gmsh", "view", "vtk")  # that a build may be without
+LIBRARIES = ("gdcm", "gmsh", "view", "vtk")  # that a build may be without
 SECONDS = 60  # that a block may take
 SOURCE_FOLDERS = ("bench", "cmake", "docs", "examples", "host", "io", "kernels", "python", "tests")
 
@@ -149,8 +149,9 @@ class Runner:
             if block.not_run:
                 self.not_run.append(f"{where}: {block.not_run}")
                 continue
-            if block.needs and not self.has(block.needs):
-                print(f"left out: {where}: there is no {block.needs}")
+            missing = [name for name in block.needs.split(",") if name and not self.has(name)]
+            if missing:
+                print(f"left out: {where}: there is no {', '.join(missing)}")
                 continue
             if block.language == "python":
                 if not self.has_package:

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/import/child_message.hpp"
+#include "io/child/child_message.hpp"
 #include "io/import/mesh_child.hpp"
 #include "tests/support/io_files.hpp"
 

@@ -1,7 +1,7 @@
 # ---- ./dev check: sourced by ./dev, whose functions and variables it uses --------------------
 
 # Parts in the order in which they run; each builds into its own folder below build/.
-check_parts=(lint format host tidy small shared cuda release fused asan fuzz docs)
+check_parts=(lint format host tidy small shared cuda release fused asan fuzz types docs)
 
 # source_files EXTENSION...: the C++ and CUDA sources, from the root
 source_files() {
@@ -180,6 +180,17 @@ check_fuzz() {
   cmake --build "$root/build/asan" --target fuzz_io fuzz_mesh
   "$root/build/asan/fuzz_io" 60 "${RANDOM}"
   "$root/build/asan/fuzz_mesh" 60 "${RANDOM}"
+}
+
+# Types of the Python package, its stubs and examples; the tests run mypy alone.
+check_types() {
+  python3 -m pyright --version >/dev/null 2>&1 ||
+    { echo "left out: no pyright; python3 -m pip install 'pyright[nodejs]'"; return 0; }
+  build_release tetwarp_python_stub
+  local folder=$root/build/check-types
+  rm -rf "$folder" && mkdir -p "$folder"
+  cp -rL "$release/python/tetwarp" "$root"/examples/python/*.py "$root/pyproject.toml" "$folder"
+  (cd "$folder" && python3 -m pyright)
 }
 
 check_docs() { docs; }

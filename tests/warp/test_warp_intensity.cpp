@@ -81,6 +81,37 @@ TEST(WarpIntensity, KeepsTheTotalAndIsTheReference) {
   }
 }
 
+/// Meshes that fold, overlap, have flat, tiny and inverted tetrahedra, planes in the planes between
+/// voxels and nearly there. Sums of the reference's pieces cost a rounding each.
+TEST(WarpIntensity, IsTheReferenceForBadMeshes) {
+  for (const char* const name : {"aligned", "half_voxel", "slivers_3", "thin_aligned_5", "soup",
+                                 "overlapping", "folded", "flat", "outside"}) {
+    SCOPED_TRACE(name);
+    const scenes::Scene scene = scenes::adversarial_scene(name, 8);
+    const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float64);
+    const Step expected = run(source, scene, Backend::reference, Intensity::conservative);
+    const Step step = run(source, scene, Backend::cpu, Intensity::conservative);
+    const auto samples = source.samples<double>();
+    const double bound = 1e-12 * std::abs(*std::ranges::max_element(
+                                     samples, {}, [](double x) { return std::abs(x); }));
+    EXPECT_LE(largest_difference(step.volume, expected.volume), bound);
+  }
+}
+
+/// Up to 343 voxels of the source go into one, of samples that vary or are all the same.
+TEST(WarpIntensity, KeepsTheTotalOfShrunkAndConstantSources) {
+  const Grid grid = scenes::unit_grid(28, 28, 28);
+  for (const double scale : {1.0 / 7, 1.0 / 3, 0.5}) {
+    const scenes::Scene scene = affine_scene(grid, grid, turn(0.3, {1, 1, 2}) * scale);
+    Volume source = scenes::wavy_volume(grid, PixelType::float64);
+    for (const bool is_constant : {false, true}) {
+      if (is_constant) std::ranges::fill(source.samples<double>(), 3.5);
+      const StepReport report = run(source, scene, Backend::cpu, Intensity::conservative).report;
+      EXPECT_NEAR(report.totals.after[0] / report.totals.before[0], 1, 1e-12) << scale;
+    }
+  }
+}
+
 /// Three sources of nine components: 27 totals, each that of the source alone.
 TEST(WarpIntensity, ReportsTheTotalsOfAllSources) {
   const scenes::Scene scene = whole_scenes()[1];

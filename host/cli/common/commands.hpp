@@ -17,11 +17,13 @@ void add_points_command(CLI::App& app, Run& run);
 void add_compose_command(CLI::App& app, Run& run);
 void add_invert_command(CLI::App& app, Run& run);
 void add_contact_command(CLI::App& app, Run& run);
+void add_certify_command(CLI::App& app, Run& run);
 void add_simulate_command(CLI::App& app, Run& run);
 void add_view_command(CLI::App& app, Run& run);
 void add_import_command(CLI::App& app, Run& run);
 void add_export_command(CLI::App& app, Run& run);
 void add_render_command(CLI::App& app, Run& run);
+void add_plot_command(CLI::App& app, Run& run);
 void add_info_command(CLI::App& app, Run& run);
 void add_demo_command(CLI::App& app, Run& run);
 

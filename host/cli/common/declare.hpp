@@ -18,6 +18,9 @@ namespace tetwarp::cli {
 /// Declares the option --quiet: print nothing but errors.
 void add_quiet(CLI::App& app, bool& is_quiet);
 
+/// Declares the option --series: of a folder of DICOM images, the UID of the series to read.
+void add_series(CLI::App& app, std::string& series);
+
 /// Adds a subcommand.
 /// @param synopsis  what follows the name in the usage line, e.g. "VOLUME -o MESH"
 /// @param examples  shown below the options

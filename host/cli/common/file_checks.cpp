@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <tetwarp/mesh_import.hpp>
@@ -64,12 +65,12 @@ void check_hdf_name(const std::string& output) {
 }
 
 void check_volume_name(const std::string& output) {
-  if (has_nifti_name(output) || has_image_name(output)) return;
+  if (has_nifti_name(output) || has_image_name(output) || has_vtk_image_name(output)) return;
   if (!has_hdf_extension(output)) {
     throw IoError(
         output, "",
         "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii, .nii.gz, .nrrd, .mha, .mhd, "
-        ".mgh or .mgz");
+        ".mgh, .mgz or .vti");
   }
 }
 
@@ -86,19 +87,24 @@ constexpr const char* to_vtu =
     "convert it to .vtu, .vtk or .msh, for example by ParaView or meshio";
 constexpr const char* to_mesh =
     "make a mesh of tetrahedra of it: tetwarp mesh --from-surface, or Gmsh";
-constexpr ForeignFormat foreign_formats[] = {{".dcm", "DICOM image", to_nifti},
-                                             {".vti", "VTK image", to_nifti},
-                                             {".tif", "TIFF image", to_nifti},
-                                             {".tiff", "TIFF image", to_nifti},
-                                             {".pvtu", "mesh in several files", to_vtu},
-                                             {".inp", "Abaqus mesh", to_vtu},
-                                             {".med", "MED mesh", to_vtu},
-                                             {".xdmf", "XDMF mesh", to_vtu},
-                                             {".mesh", "Medit mesh", to_vtu},
-                                             {".stl", "surface", to_mesh},
-                                             {".ply", "surface", to_mesh},
-                                             {".obj", "surface", to_mesh},
-                                             {".vtp", "surface", to_mesh}};
+constexpr const char* to_vti = "save it as .vti, for example by ParaView";
+constexpr ForeignFormat foreign_formats[] = {
+    {".dcm", "DICOM file without 'DICM' at byte 128", to_nifti},
+    {".pvti", "VTK image in several files", to_vti},
+    {".vtr", "VTK grid of uneven spacing", to_vti},
+    {".vts", "curvilinear VTK grid", to_vti},
+    {".tif", "TIFF image", to_nifti},
+    {".tiff", "TIFF image", to_nifti},
+    {".pvtu", "mesh in several files", to_vtu},
+    {".inp", "Abaqus mesh", to_vtu},
+    {".med", "MED mesh", to_vtu},
+    {".xdmf", "XDMF mesh", to_vtu},
+    {".xmf", "XDMF mesh", to_vtu},
+    {".mesh", "Medit mesh", to_vtu},
+    {".stl", "surface", to_mesh},
+    {".ply", "surface", to_mesh},
+    {".obj", "surface", to_mesh},
+    {".vtp", "surface", to_mesh}};
 
 /// Throws IoError for a file that is known not to be readable: of another format, or empty.
 void refuse_foreign(const std::string& path, const std::string& expected) {
@@ -115,9 +121,14 @@ void refuse_foreign(const std::string& path, const std::string& expected) {
 
 /// What a file is, in words for a message.
 std::string noun_of(const std::string& path, FileKind kind) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return "folder";
   if (kind == FileKind::unknown && has_mesh_extension(path)) return "mesh";
   if (kind == FileKind::unknown && (has_nifti_name(path) || has_extension(path, ".hdr"))) {
     return "file without a NIfTI header (damaged, truncated or of another format)";
+  }
+  if (kind == FileKind::unknown && has_vtk_image_name(path)) {
+    return "file without a VTK image (damaged, truncated or of another format)";
   }
   if (kind == FileKind::unknown && (has_extension(path, ".mgz") || has_extension(path, ".mgh"))) {
     return "file without a header of FreeSurfer (damaged, truncated or of another format)";
@@ -154,6 +165,16 @@ void check_volume(const std::string& path, const std::string& remedy) {
   if (kind != FileKind::volume && kind != FileKind::nifti && kind != FileKind::image) {
     refuse_kind(path, kind, "volume", remedy);
   }
+}
+
+void check_series(const std::string& series, const std::vector<std::string>& volumes) {
+  const auto is_folder = [](const std::string& path) {
+    std::error_code error;
+    return fs::is_directory(path, error);
+  };
+  if (series.empty() || std::ranges::any_of(volumes, is_folder)) return;
+  throw IoError(volumes.front(), "",
+                "is no folder; --series is for folders of DICOM images, leave it out");
 }
 
 void check_mesh(const std::string& path, const std::string& remedy) {

@@ -31,6 +31,9 @@ void check_kind(const std::string& path, FileKind expected, const std::string& r
 /// Checks that a file can be opened and is a volume, VTKHDF or NIfTI.
 void check_volume(const std::string& path, const std::string& remedy);
 
+/// Checks that a series is named only if one of the volumes is a folder, of DICOM images.
+void check_series(const std::string& series, const std::vector<std::string>& volumes);
+
 /// Checks that a file can be opened and is a mesh: VTKHDF, or by its name Gmsh's or VTK's.
 void check_mesh(const std::string& path, const std::string& remedy);
 

@@ -43,6 +43,7 @@ void check_kinds(const WarpArguments& arguments) {
   for (const std::string& volume : arguments.volumes()) {
     check_volume(volume, order);
   }
+  check_series(arguments.series, arguments.volumes());
   check_mesh(arguments.mesh_file(), order);
 }
 
@@ -58,6 +59,7 @@ VolumeReadOptions read_options(const std::string& path,
                                const fs::path& output) {
   VolumeReadOptions options;
   options.scratch = output.string();
+  options.series = arguments.series;
   if (arguments.axes == Axes::lps && kind_of(path) == FileKind::nifti &&
       is_turned(read_volume_header(path).arrays.front())) {
     options.axes = Axes::lps;
@@ -227,11 +229,15 @@ double cpu_seconds_of(const JobPlan& plan, const WarpArguments& arguments) {
                                plan.mesh.header().hex_count > 0);
 }
 
-/// The name of an output in a folder: that of its volume. A pair .hdr and .img becomes one file
-/// .nii.gz.
+/// The name of an output in a folder: that of its volume. A pair .hdr and .img and DICOM images
+/// become one file .nii.gz.
 std::string output_name_of(const std::string& volume) {
-  std::string name = fs::path(volume).filename().string();
-  for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz"}) {
+  fs::path path = fs::path(volume).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();  // of a folder with a slash at its end
+  std::string name = path.filename().string();
+  std::error_code error;
+  if (fs::is_directory(volume, error)) return name + ".nii.gz";
+  for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz", ".dcm"}) {
     if (has_extension(name, end)) return name.substr(0, name.size() - end.size()) + ".nii.gz";
   }
   check_volume_name(name);

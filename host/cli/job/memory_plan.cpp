@@ -79,10 +79,14 @@ double fixed_memory(const VolumePlan& plan,
   const auto threads = arguments.warp.threads > 0
                            ? static_cast<double>(arguments.warp.threads)
                            : static_cast<double>(std::thread::hardware_concurrency());
+  const auto tets = static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count);
   // Footprints, lists of tetrahedra, and positions in several forms.
-  double bytes = resident_memory() + growth + thread_bytes * threads +
-                 160 * static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count) +
+  double bytes = resident_memory() + growth + thread_bytes * threads + 160 * tets +
                  120 * static_cast<double>(mesh.node_count);
+  // Parts of facets of two cells per thread; faces while neighbors are found.
+  if (arguments.warp.intensity == Intensity::conservative) {
+    bytes += 4 * mebibyte * threads + 110 * tets;
+  }
   for (const ArrayHeader& array : plan.arrays) {
     // A stored chunk, and its buffer before and after it grows during inflation.
     const VolumeReader reader(plan.path, array.name, arguments.source_step.value_or(0), plan.read);

@@ -1,5 +1,5 @@
 /// @file provenance.cpp
-/// Hashes inputs once, and writes one file per output.
+/// Hashes inputs once, writes one file per output, and compares such files with what is there.
 #include "host/cli/job/provenance.hpp"
 
 #include <fmt/chrono.h>
@@ -7,6 +7,7 @@
 
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <tetwarp/names.hpp>
@@ -29,6 +30,14 @@ Json facts_of(const std::string& role, const std::string& path) {
           {"file", error ? path : absolute},
           {"bytes", fs::file_size(path)},
           {"sha256", sha256_of_file(path)}};
+}
+
+/// Facts of an output, and of its samples where they are a file of their own.
+Json facts_of_output(const std::string& output) {
+  Json facts = {{"output", facts_of("output", output)}};
+  const std::vector<std::string> files = files_of(output);
+  if (files.size() > 1) facts["samples"] = facts_of("samples", files[1]);
+  return facts;
 }
 
 /// All files that a job reads; a list of files with those that it names.
@@ -54,12 +63,62 @@ Json given_as_json(const WarpArguments& arguments) {
   return options;
 }
 
+/// Options as given, but those that change no value.
+Json deciding_options(Json options) {
+  if (!options.is_object()) return {};
+  for (const char* name : {"output", "resume", "provenance", "quiet", "report", "threads", "memory",
+                           "strict", "dry-run", "no-skip", "device", "batch", "jobs"}) {
+    options.erase(name);
+  }
+  return options;
+}
+
+/// Of files: role, size and hash, without their place.
+Json contents_of(Json files) {
+  for (Json& file : files) {
+    if (file.is_object()) file.erase("file");
+  }
+  return files;
+}
+
+/// The content of OUT.json; null where there is none, or no JSON object.
+Json read_facts(const std::string& file) {
+  std::ifstream stream(file);
+  const Json facts = Json::parse(stream, nullptr, false);
+  return facts.is_object() ? facts : Json();
+}
+
 bool is_older(const std::string& file, const std::string& output) {
   std::error_code error;
   const auto written = fs::last_write_time(file, error);
   return error || written < fs::last_write_time(output);
 }
 }  // namespace
+
+ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& plan) {
+  bool is_missing = false;
+  Json inputs;
+  for (const std::string& output : plan.outputs()) {
+    const Json facts = read_facts(output + ".json");
+    std::error_code error;
+    if (facts.is_null() || !fs::is_regular_file(output, error)) {
+      is_missing = true;
+      continue;
+    }
+    if (inputs.is_null()) inputs = contents_of(facts_of_inputs(arguments));
+    const Json now = facts_of_output(output);
+    const auto is_as_written = [&](const char* file) {
+      return contents_of({facts.value(file, Json())}) == contents_of({now.value(file, Json())});
+    };
+    const bool agrees = facts.value("tetwarp", Json()) == TETWARP_VERSION &&
+                        deciding_options(facts.value("options", Json::object())) ==
+                            deciding_options(given_as_json(arguments)) &&
+                        contents_of(facts.value("inputs", Json::array())) == inputs &&
+                        is_as_written("output") && is_as_written("samples");
+    if (!agrees) return ProvenanceState::contradicts;
+  }
+  return is_missing ? ProvenanceState::missing : ProvenanceState::agrees;
+}
 
 void write_provenance(const WarpArguments& arguments,
                       const JobPlan& plan,
@@ -78,7 +137,7 @@ void write_provenance(const WarpArguments& arguments,
                  {"warnings", result.warnings}};
       }
       Json own = facts;
-      own["output"] = facts_of("output", output);
+      own.update(facts_of_output(output));
       write_finished_file(file, json_text(own, 2) + "\n");
     }
   }

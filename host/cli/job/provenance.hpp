@@ -6,6 +6,17 @@
 
 namespace tetwarp::cli {
 
+/// What the files OUT.json beside the outputs of a job say of it.
+enum class ProvenanceState {
+  agrees,      ///< all outputs are as they were written, from these inputs with these options
+  missing,     ///< an output has none, and none contradicts
+  contradicts  ///< an output, an input, an option or the version is another one
+};
+
+/// Compares sizes, SHA-256, options and the version. Options that change no value (threads, memory,
+/// reports) may differ, and inputs may have moved.
+ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& plan);
+
 /// Writes OUT.json for each file OUT of a job that lacks one or has an older one: the version, the
 /// back end, the options as given, and all inputs with their size and SHA-256, as JSON.
 /// @throws IoError

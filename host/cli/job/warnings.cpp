@@ -126,6 +126,7 @@ Warnings volume_notes(const std::string& path,
                       const VolumeHeader& volume,
                       const WarpArguments& arguments) {
   Warnings notes;
+  for (const std::string& note : volume.notes) notes.push_back(path + ": " + note);
   if (!volume.left_out.empty()) notes.push_back(path + ": left out: " + listed(volume.left_out));
   if (!arguments.arrays.empty()) return notes;
   std::vector<std::string> results;
@@ -219,6 +220,12 @@ void print_warnings(const Warnings& warnings, const std::string& job) {
 
 void print_merged(const std::string& path, const std::string& merged) {
   if (!merged.empty()) print_warnings({path + ": " + merged}, "");
+}
+
+void print_notes(const std::string& path, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) {
+    fmt::print(stderr, "tetwarp: {}: {}\n", path, one_line(note));
+  }
 }
 
 void print_left_out(const std::string& path, const std::vector<std::string>& left_out) {

@@ -56,6 +56,9 @@ void refuse_warnings(const Warnings& warnings);
 /// Prints each as one line to standard error. @param job  empty, or a name such as "job 3"
 void print_warnings(const Warnings& warnings, const std::string& job);
 
+/// Prints facts about a file on standard error, one line each.
+void print_notes(const std::string& path, const std::vector<std::string>& notes);
+
 /// Prints the warning about cells of a mesh that were merged, and what of a file was left out, if
 /// there is any.
 void print_merged(const std::string& path, const std::string& merged);

@@ -159,13 +159,15 @@ void declare_outside_options(CLI::App& app, WarpOptions& warp) {
 namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
   app.add_option("FILES", arguments.files,
-                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage, .mgz), then the mesh that "
+                 "one or more volumes (VTKHDF, NIfTI, NRRD, MetaImage, .mgz, .vti, a folder of "
+                 "DICOM images), then the mesh that "
                  "warps them (VTKHDF, .msh, .vtu, .vtk, .pvd, .vtm, .exo, 'step_*.vtu'), or one "
                  "volume and a displacement field or a transform of ITK (.tfm, .txt, .mat, .h5)")
       ->type_name("");
   app.add_option(
          "-o,--output", arguments.output,
-         "file to write, .vtkhdf, .nii.gz, .nrrd, .mha, .mhd or .mgz; for several volumes a folder")
+         "file to write, .vtkhdf, .nii.gz, .nrrd, .mha, .mhd, .mgz or .vti; for several volumes a "
+         "folder")
       ->type_name("OUT");
   app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
       ->allow_extra_args(false)
@@ -174,6 +176,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
                  "step of a volume file with several steps [0; by a mesh of one step all]")
       ->check(at_least(0))
       ->type_name("N");
+  add_series(app, arguments.series);
   app.add_flag("--pair", arguments.pair, "warp step n of the volume by step n of the mesh");
   add_parsed(
       app, "--steps", arguments.steps, [](const std::string& text) { return StepSelection(text); },

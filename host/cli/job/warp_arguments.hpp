@@ -25,6 +25,7 @@ struct WarpArguments {
   std::string output;                       ///< file, or folder for several volumes
   std::vector<std::string> arrays;          ///< empty: every array
   std::optional<std::int64_t> source_step;  ///< of volume files with several steps
+  std::string series;                       ///< UID of the DICOM series in a folder
   bool pair = false;                        ///< step n of the mesh warps step n of the volume
   StepSelection steps;
   MeshReadOptions mesh;        ///< without the axes of `import`

@@ -11,6 +11,22 @@
 
 namespace tetwarp::cli {
 namespace {
+/// As add_choice(), for a value that may be left open.
+template <class T>
+void add_optional_choice(CLI::App& app,
+                         const std::string& option,
+                         std::optional<T>& target,
+                         const Choices<T>& choices,
+                         const std::string& description) {
+  app.add_option_function<std::string>(
+         option,
+         [&target, option, choices](const std::string& word) {
+           target = meaning_of(option, word, choices);
+         },
+         description)
+      ->type_name(CLI::detail::join(words_of(choices), "|"));
+}
+
 void declare_scene(CLI::App& app, SimulateArguments& arguments) {
   app.add_option("SCENE", arguments.scene_file, "scene file, JSON")->type_name("");
   app.add_option("--scene", arguments.scene_name,
@@ -26,9 +42,6 @@ void declare_scene(CLI::App& app, SimulateArguments& arguments) {
       "--untangle", arguments.simulate.untangle,
       "shrink elastic bodies and cloth that intersect others at the start, and let them grow "
       "back within 0.2 s");
-  app.add_option("--contacts", arguments.contacts,
-                 "write the contacts of every output as points with normals and impulses")
-      ->type_name("FILE.vtkhdf");
   app.add_option("--checkpoint", arguments.checkpoint,
                  "file for the state at the end, also of an interrupted run, to go on later")
       ->type_name("FILE");
@@ -39,6 +52,19 @@ void declare_scene(CLI::App& app, SimulateArguments& arguments) {
   app.add_option("--restart", arguments.restart,
                  "go on from a checkpoint; results in the folder up to it are kept")
       ->type_name("FILE");
+}
+
+void declare_contact(CLI::App& app, SimulateArguments& arguments) {
+  app.add_option("--contacts", arguments.contacts,
+                 "write the contacts of every output as points with normals and impulses")
+      ->type_name("FILE.vtkhdf");
+  add_optional_choice(app, "--law", arguments.law, choices_of<FrictionLaw>(),
+                      "friction law [that of the scene]");
+  add_optional_choice(app, "--rule", arguments.rule, choices_of<AdhesionRule>(),
+                      "friction beside adhesion [that of the scene]");
+  app.add_flag(
+      "--no-adhesion", [&arguments](std::int64_t) { arguments.adheres = false; },
+      "let nothing adhere, whatever the scene says");
 }
 
 void declare_warping(CLI::App& app, SimulateArguments& arguments) {
@@ -128,6 +154,7 @@ void check_camera(const SimulateArguments& arguments) {
 
 void declare_simulate_options(CLI::App& app, SimulateArguments& arguments) {
   declare_scene(app, arguments);
+  declare_contact(app, arguments);
   declare_running(app, arguments);
   declare_pictures(app, arguments);
   declare_warping(app, arguments);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include <tetwarp/contact.hpp>
 #include <tetwarp/simulate.hpp>
 #include <tetwarp/warp.hpp>
 
@@ -26,6 +27,9 @@ struct SimulateArguments {
   std::int64_t checkpoint_every = 0;  ///< steps; 0: at the end only
   std::string restart;                ///< file; empty: from the start
   std::string contacts;               ///< file; empty: none
+  std::optional<FrictionLaw> law;     ///< instead of the scene's
+  std::optional<AdhesionRule> rule;   ///< instead of the scene's
+  bool adheres = true;                ///< false: whatever the scene says, nothing adheres
 
   bool warps = false;
   std::string warped_body;  ///< empty: all that are made of a volume

@@ -35,6 +35,21 @@ Scene load(const SimulateArguments& arguments, std::vector<std::string>& files) 
   return read_scene(arguments.scene_file, &files);
 }
 
+/// Puts the contact options in place of what the scene says.
+void choose_contact(const SimulateArguments& arguments, Scene& scene) {
+  if (arguments.law) scene.solver.pyramid = *arguments.law == FrictionLaw::pyramid;
+  if (arguments.rule) scene.solver.restrictive = *arguments.rule == AdhesionRule::restrictive;
+  if (arguments.adheres) return;
+  scene.contact.material.adhesion.reset();
+  for (ContactPairMaterial& pair : scene.contact.pairs) pair.adhesion.reset();
+  for (Body& body : scene.bodies) {
+    if (body.contact) body.contact->adhesion.reset();
+  }
+  for (Obstacle& obstacle : scene.obstacles) {
+    if (obstacle.contact) obstacle.contact->adhesion.reset();
+  }
+}
+
 /// Checks the names of all files before anything is computed. The checkpoint that a run continues
 /// from may be replaced by its own.
 void check_files(const SimulateArguments& arguments) {
@@ -138,6 +153,7 @@ SimulateRun::SimulateRun(const SimulateArguments& arguments) : arguments_(argume
   const Stopwatch reading;
   std::vector<std::string> files;
   Scene scene = load(arguments, files);
+  choose_contact(arguments, scene);
   result_.read_seconds = reading.seconds();
   check_results(arguments, scene, files);
   last_step_ = arguments.steps.value_or(scene.step_count());

@@ -92,7 +92,7 @@ Volume composed(const ComposeArguments& arguments,
   return field;
 }
 
-void print_notes(const std::string& output, const Grid& grid, const ChainNotes& notes) {
+void print_chain_notes(const std::string& output, const Grid& grid, const ChainNotes& notes) {
   if (notes.outside > 0) {
     fmt::print(stderr,
                "tetwarp: {}: {} of {} positions were in no cell of a mesh and kept their "
@@ -131,7 +131,7 @@ int run_compose(const ComposeArguments& arguments) {
                         ChunkShape::rows);
     writer.write(0, {{0, 0, 0}, grid.dims}, field.data.data());
     writer.finish();
-    print_notes(names[s], grid, notes);
+    print_chain_notes(names[s], grid, notes);
     if (has_nifti_name(names[s]) && itk_components(grid) == 2) {
       fmt::print(stderr, "tetwarp: {}: {}\n", names[s], itk_slice_note);
     }

@@ -31,6 +31,7 @@ struct ExportArguments {
 /// " with 3 components along LPS axes"; nothing for scalars.
 std::string axes_text(const ArrayHeader& array) {
   if (array.components == 1) return {};
+  if (!array.nifti) return fmt::format(" with {} components", array.components);
   if (array.is_itk_field) return ", a displacement field for ITK in mm";
   return fmt::format(" with {} components along {} axes", array.components,
                      array.nifti->component_axes == Axes::lps ? "LPS" : "RAS");
@@ -38,19 +39,19 @@ std::string axes_text(const ArrayHeader& array) {
 
 int run_export(const ExportArguments& arguments) {
   check_volume(arguments.input, "usage: tetwarp export VOLUME -o FILE.nii.gz");
-  if (!holds_one_array(arguments.output)) {
+  if (!holds_one_array(arguments.output) && !has_vtk_image_name(arguments.output)) {
     throw IoError(
         arguments.output, "",
-        "the name of an image to export ends in .nii, .nii.gz, .nrrd, .mha, .mhd, .mgh or "
-        ".mgz");
+        "the name of an image to export ends in .nii, .nii.gz, .nrrd, .mha, .mhd, .mgh, .mgz or "
+        ".vti");
   }
   check_output_file(arguments.output, {arguments.input});
   const std::vector<double> times = read_volume_header(arguments.input).times;
   const std::optional<std::int64_t> first =
       arguments.temporal ? std::optional<std::int64_t>(0) : arguments.step;
   const Volume volume = read_array(arguments.input, arguments.array, first);
-  const ArrayHeader array = nifti_array(
-      VolumeReader(arguments.input, volume.name, first.value_or(0)).array(), arguments.axes);
+  ArrayHeader array = VolumeReader(arguments.input, volume.name, first.value_or(0)).array();
+  if (!has_vtk_image_name(arguments.output)) array = nifti_array(array, arguments.axes);
   if (array.is_itk_field && itk_components(volume.grid) == 2) {
     fmt::print(stderr, "tetwarp: {}: {}\n", arguments.output, itk_slice_note);
   }
@@ -90,7 +91,7 @@ void add_export_command(CLI::App& app, Run& run) {
       ->type_name("");
   command
       ->add_option("-o,--output", arguments->output,
-                   "image to write, .nii, .nii.gz, .nrrd, .mha, .mhd or .mgz")
+                   "image to write, .nii, .nii.gz, .nrrd, .mha, .mhd, .mgz or .vti")
       ->required()
       ->type_name("FILE");
   command->add_option("--array", arguments->array, "array to write [active scalars]")

@@ -23,6 +23,7 @@ struct ImportArguments {
   VolumeWriteOptions write;
   MeshImportOptions mesh;
   std::optional<Axes> axes;
+  std::string series;
   bool quiet = false;
 };
 
@@ -37,10 +38,9 @@ std::string components_text(const ArrayHeader& array, const ImportArguments& arg
 
 void run_volume_import(const ImportArguments& arguments) {
   if (kind_of(arguments.input) != FileKind::image) {
-    check_kind(
-        arguments.input, FileKind::nifti,
-        "usage: tetwarp import FILE -o VOLUME, with a NIfTI, NRRD or MetaImage file or a mesh "
-        "named .msh, .vtu or .vtk");
+    check_kind(arguments.input, FileKind::nifti,
+               "usage: tetwarp import FILE -o VOLUME, with a NIfTI, NRRD, MetaImage or .vti file, "
+               "a folder of DICOM images, or a mesh named .msh, .vtu or .vtk");
   } else if (arguments.axes) {
     throw IoError(
         arguments.input, "",
@@ -49,24 +49,33 @@ void run_volume_import(const ImportArguments& arguments) {
   if (arguments.mesh.displacement) {
     throw IoError(arguments.input, "", "is not a mesh; leave out --displacement");
   }
-  const VolumeReadOptions read{arguments.axes.value_or(Axes::ras), arguments.output};
+  check_series(arguments.series, {arguments.input});
+  VolumeReadOptions read{arguments.axes.value_or(Axes::ras), arguments.output};
+  read.series = arguments.series;
   const VolumeHeader header = read_volume_header(arguments.input, read);
-  const ArrayHeader& array = header.arrays.front();
   const Grid& grid = header.grid;
   const std::size_t steps = std::max<std::size_t>(1, header.times.size());
-  BlockVolumeWriter writer(arguments.output, grid, {array}, arguments.write, steps > 1,
+  VolumeWriteOptions write = arguments.write;
+  write.scalars = header.active;
+  BlockVolumeWriter writer(arguments.output, grid, header.arrays, write, steps > 1,
                            ChunkShape::rows);
   for (std::size_t step = 0; step < steps; ++step) {
-    const Volume volume =
-        read_volume(arguments.input, array.name, static_cast<std::int64_t>(step), read);
     if (steps > 1) writer.begin_step(header.times[step]);
-    writer.write(0, {{0, 0, 0}, grid.dims}, volume.data.data());
+    for (std::size_t a = 0; a < header.arrays.size(); ++a) {
+      const Volume volume = read_volume(arguments.input, header.arrays[a].name,
+                                        static_cast<std::int64_t>(step), read);
+      writer.write(a, {{0, 0, 0}, grid.dims}, volume.data.data());
+    }
   }
   writer.finish();
+  print_notes(arguments.input, header.notes);
   print_left_out(arguments.input, header.left_out);
+  print_left_out(arguments.input, header.not_read);
   if (arguments.quiet) return;
-  fmt::print("{} x {} x {} voxels of {}{}{}: {}\n", grid.dims[0], grid.dims[1], grid.dims[2],
+  const ArrayHeader& array = header.arrays.front();
+  fmt::print("{} x {} x {} voxels of {}{}{}{}: {}\n", grid.dims[0], grid.dims[1], grid.dims[2],
              name_of(array.type), components_text(array, arguments),
+             header.arrays.size() > 1 ? fmt::format(", {} arrays", header.arrays.size()) : "",
              steps > 1 ? fmt::format(", {} steps", steps) : "", arguments.output);
 }
 
@@ -109,8 +118,8 @@ void add_import_command(CLI::App& app, Run& run) {
   command
       ->add_option(
           "FILE", arguments->input,
-          "image, .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd; or mesh of tetrahedra "
-          "and hexahedra: "
+          "image, .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha, .mhd or .vti, or a folder of DICOM "
+          "images; or mesh of tetrahedra and hexahedra: "
           "Gmsh's .msh 2 and 4, "
           "VTK's .vtu, .vtk, .vtm, .pvd and .series, Exodus' .e and .exo; '*' in a name for "
           "numbered files")
@@ -131,6 +140,7 @@ void add_import_command(CLI::App& app, Run& run) {
            "axes of the file's vectors and tensors, of a mesh also of its nodes; lps is turned to "
            "ras, in which NIfTI headers place voxels [ras: NIfTI's; meshes have none and stay as "
            "they are]");
+  add_series(*command, arguments->series);
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_import(*arguments); }; });
 }

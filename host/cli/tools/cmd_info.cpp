@@ -26,6 +26,7 @@ struct InfoArguments {
   std::string file;
   bool stats = false;
   bool json = false;
+  std::string series;
   bool quiet = false;
 };
 
@@ -60,9 +61,14 @@ void add_range(Json& json, const Volume& volume) {
 }
 
 Json volume_json(const InfoArguments& arguments) {
-  const VolumeHeader header = read_volume_header(arguments.file);
+  check_series(arguments.series, {arguments.file});
+  VolumeReadOptions read;
+  read.series = arguments.series;
+  const VolumeHeader header = read_volume_header(arguments.file, read);
   const FileKind kind = kind_of(arguments.file);
-  const bool has_one_array = kind == FileKind::nifti || kind == FileKind::image;
+  // Formats of one array give it no name.
+  const bool has_one_array =
+      kind != FileKind::volume && header.arrays.size() == 1 && header.active == Volume{}.name;
   const char* const word = kind == FileKind::nifti   ? "nifti"
                            : kind == FileKind::image ? "image"
                                                      : "volume";
@@ -76,7 +82,7 @@ Json volume_json(const InfoArguments& arguments) {
     const ArrayHeader& array = header.arrays.front();
     json["type"] = name_of(array.type);
     json["components"] = array.components;
-    if (arguments.stats) add_range(json, read_volume(arguments.file));
+    if (arguments.stats) add_range(json, read_volume(arguments.file, {}, 0, read));
   }
   for (const ArrayHeader& array : has_one_array ? std::vector<ArrayHeader>() : header.arrays) {
     Json entry{{"type", name_of(array.type)}, {"components", array.components}};
@@ -84,6 +90,7 @@ Json volume_json(const InfoArguments& arguments) {
     json["arrays"][array.name] = entry;
   }
   if (header.arrays.size() > 1) json["active"] = header.active;
+  if (!header.notes.empty()) json["notes"] = header.notes;
   if (!header.not_read.empty()) json["not_read"] = header.not_read;
   if (!header.left_out.empty()) json["left_out"] = header.left_out;
   if (const auto fingerprint = read_fingerprint(arguments.file)) json["fingerprint"] = *fingerprint;
@@ -214,6 +221,7 @@ void add_info_command(CLI::App& app, Run& run) {
       ->type_name("");
   command->add_flag("--stats", arguments->stats, "read the samples and show their range");
   command->add_flag("--json", arguments->json, "print JSON");
+  add_series(*command, arguments->series);
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_info(*arguments); }; });
 }

@@ -35,7 +35,7 @@ void check_options(const WarpArguments& arguments, const CLI::App& command) {
                                     "--fsl",       "--grid",    "--like",        "--dims",
                                     "--origin",    "--spacing", "--direction",   "--filter",
                                     "--overshoot", "--outside", "--background",  "--compress",
-                                    "--threads",   "--quiet",   "--backend"};
+                                    "--threads",   "--quiet",   "--backend",     "--series"};
   for (const CLI::Option* const option : command.get_options()) {
     const std::string name = option->get_name();
     if (option->count() == 0 || name == "FILES" || known.contains(name)) continue;
@@ -80,6 +80,7 @@ Source open_source(const WarpArguments& arguments) {
   const std::string& path = arguments.files.front();
   Source source;
   source.read.are_labels = arguments.warp.filter == Filter::labels;
+  source.read.series = arguments.series;
   source.header = read_volume_header(path, source.read);
   source.arrays = choose_arrays(source.header, arguments, path);
   check_arrays(path, source.header.grid, source.arrays, arguments);
@@ -139,6 +140,7 @@ void run_transform_job(const WarpArguments& arguments, const CLI::App& command) 
   check_options(arguments, command);
   const std::string& path = arguments.files.front();
   check_volume(path, order);
+  check_series(arguments.series, {path});
   check_volume_name(arguments.output);
   std::vector<std::string> inputs = arguments.files;
   if (arguments.grid.base != "same") inputs.push_back(arguments.grid.base);
@@ -164,6 +166,7 @@ void run_transform_job(const WarpArguments& arguments, const CLI::App& command) 
     write_step(arguments, source, step, file.transform, options, writer, bar);
   }
   writer.finish();
+  print_notes(path, source.header.notes);
   std::vector<std::string> lost = source.header.not_read;
   lost.insert(lost.end(), source.header.left_out.begin(), source.header.left_out.end());
   if (!lost.empty()) {

@@ -74,6 +74,17 @@ std::string steps_text(const WarpArguments& arguments, const JobPlan& plan) {
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
+/// Whether all outputs stay as they are, by the files of --provenance beside them. Where one of
+/// these contradicts, --resume is turned off: the job is computed again.
+bool keeps_outputs(const JobPlan& plan, WarpArguments& arguments, JobResult& result) {
+  if (!arguments.resume || !arguments.provenance || arguments.dry_run) return false;
+  const ProvenanceState state = provenance_state(arguments, plan);
+  arguments.resume = state != ProvenanceState::contradicts;
+  if (state != ProvenanceState::agrees) return false;
+  for (const VolumePlan& volume : plan.volumes) result.skipped += std::ssize(volume.outputs);
+  return true;
+}
+
 /// Names the mesh in errors about its positions, which a Warper finds.
 template <class Function>
 void with_mesh_named(const std::string& mesh, const Function& function) {
@@ -87,14 +98,15 @@ void with_mesh_named(const std::string& mesh, const Function& function) {
 }
 }  // namespace
 
-JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context) {
+JobResult run_warp_job(const WarpArguments& given, const JobContext& context) {
   const InterruptFlag interrupts_set_a_flag;
   const Stopwatch watch;
   Ranks alone;
   Ranks& ranks = context.ranks == nullptr ? alone : *context.ranks;
   // The root plans first: an error in the plan ends all ranks before the others print it, too.
   if (!ranks.is_root()) ranks.wait_for_all();
-  const JobPlan plan = plan_job(arguments);
+  const JobPlan plan = plan_job(given);
+  WarpArguments arguments = given;
   JobResult result;
   const auto warn = [&](const Warnings& warnings) {
     if (!ranks.is_root()) return;
@@ -113,6 +125,13 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   result.report.version = TETWARP_VERSION;
   result.report.backend = plan.backend;
   result.report.backend_reason = plan.backend_reason;
+  if (ranks.count() == 1 && keeps_outputs(plan, arguments, result)) {
+    result.report.timings.total = watch.seconds();
+    if (!arguments.report.empty()) {
+      write_finished_file(arguments.report, report_json(result) + "\n");
+    }
+    return result;
+  }
   if (ranks.is_root()) {
     if (!plan.output_folder.empty() && !arguments.dry_run) {
       std::filesystem::create_directories(plan.output_folder);

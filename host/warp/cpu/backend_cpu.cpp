@@ -7,6 +7,7 @@
 #include "host/exec/exec_cpu.hpp"
 #include "host/warp/cpu/cell_cull_cpu.hpp"
 #include "host/warp/cpu/cell_raster_cpu.hpp"
+#include "host/warp/cpu/overlap_stage_cpu.hpp"
 #include "host/warp/warp_pipeline.hpp"
 
 namespace tetwarp {

@@ -47,19 +47,6 @@ IndexAffine index_map(const Grid& grid) {
   return map;
 }
 
-/// a after b. Offsets are differences of positions that may be far from zero.
-IndexAffine composed(const IndexAffine& a, const IndexAffine& b) {
-  IndexAffine map;
-  a.map(b.offset, map.offset);
-  for (int row = 0; row < 3; ++row) {
-    for (int axis = 0; axis < 3; ++axis) {
-      map.linear[row][axis] = 0;
-      for (int n = 0; n < 3; ++n) map.linear[row][axis] += a.linear[row][n] * b.linear[n][axis];
-    }
-  }
-  return map;
-}
-
 /// From output indices to those of another grid at the same place in the world; whole-voxel shifts
 /// are exact.
 IndexAffine between_grids(const Grid& other, const Grid& output) {
@@ -72,30 +59,34 @@ IndexAffine between_grids(const Grid& other, const Grid& output) {
   return affine;
 }
 
-/// @param links  of the transform
+/// @param links  of the transform, folded
 ResampleMap make_map(const Grid& source,
                      const Grid& output,
                      const Transform& transform,
                      const std::vector<TransformLink>& links,
                      const ResampleOptions& options) {
   ResampleMap map{};
-  if (std::holds_alternative<AffineTransform>(transform)) {
-    map.to_source = composed(index_map(source), composed(links.front().affine, world_map(output)));
-    return map;
-  }
   map.to_source = between_grids(source, output);
   map.only_in_field = options.only_in_field;
-  const IndexFromWorld from_world = index_from_world(source);
-  for (int row = 0; row < 3; ++row) std::copy_n(from_world.linear[row], 3, map.from_world[row]);
-  const auto* const field = std::get_if<DisplacementField>(&transform);
-  if (field == nullptr) {
-    map.links = {links.data(), std::ssize(links)};
-    map.to_world = world_map(output);
+  if (links.empty()) return map;
+  map.to_first = map.to_world = world_map(output);
+  const bool begins_affine = links.front().is_affine();
+  if (begins_affine) map.to_first = composed(links.front().affine, map.to_world);
+  if (begins_affine && links.size() == 1) {
+    map.to_source = composed(index_map(source), map.to_first);
     return map;
   }
-  map.field = links.front().field;
-  map.is_field_grid = field->grid == output;
-  map.to_field = between_grids(field->grid, output);
+  const IndexFromWorld from_world = index_from_world(source);
+  for (int row = 0; row < 3; ++row) std::copy_n(from_world.linear[row], 3, map.from_world[row]);
+  const Grid& grid = *first_grid(transform);
+  const TransformLink& first = links[begins_affine ? 1 : 0];
+  if (links.size() == 1 && first.field.vectors != nullptr && grid == output) {
+    map.field = first.field;
+    return map;
+  }
+  map.links = {&first, std::ssize(links) - (begins_affine ? 1 : 0)};
+  map.to_first_index =
+      begins_affine ? composed(index_map(grid), map.to_first) : between_grids(grid, output);
   return map;
 }
 
@@ -130,7 +121,7 @@ void resample(std::span<const VolumeView> sources,
               const ResampleOptions& options,
               std::span<void* const> outputs,
               const Progress& progress) {
-  const std::vector<TransformLink> links = links_of(transform);
+  const std::vector<TransformLink> links = folded(links_of(transform));
   const WarpPlan plan = make_plan(sources, options);
   if (outputs.size() != sources.size() ||
       std::find(outputs.begin(), outputs.end(), nullptr) != outputs.end()) {

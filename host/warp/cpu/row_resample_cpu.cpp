@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "host/base/pixel_dispatch.hpp"
+#include "host/warp/cpu/row_links-inl.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
 #include "host/warp/cpu/row_taps-inl.hpp"
 #include "host/warp/cpu/row_vector-inl.hpp"
@@ -27,7 +28,10 @@ template <class T>
 class RowResampler {
  public:
   explicit RowResampler(const RowResampleOp<T>& op)
-      : op_(op), shape_(op.job.source), is_nearest_(op.job.filter == Filter::nearest) {
+      : op_(op),
+        links_(op.map),
+        shape_(op.job.source),
+        is_nearest_(op.job.filter == Filter::nearest) {
     const SourceView<T>& source = op.job.source;
     voxels_ = std::int64_t{source.dims[0]} * source.dims[1] * source.dims[2];
     for (int row = 0; row < 3; ++row) {
@@ -60,6 +64,24 @@ class RowResampler {
   };
 
   void add(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t row) {
+    const auto at = static_cast<std::size_t>(cell_edge * taps_.count);
+    const unsigned inside =
+        op_.map.links.size > 0 ? add_linked(i, j, k, at) : add_direct(i, j, k, at);
+    first_[taps_.count] = row * op_.dims[0] + i;
+    fetch_ahead(at);
+    if (reads_past_end(at)) {
+      for (int lane = 0; lane < cell_edge; ++lane) {
+        op_.store(i + lane, j, k, first_[taps_.count] + lane);
+      }
+      return;
+    }
+    taps_.unit[taps_.count++] = {0, 0xff, static_cast<std::uint8_t>(inside)};
+    if (taps_.count == RowTaps<true>::row_units) flush();
+  }
+
+  /// Stores the taps of eight voxels by an affine map and the vectors of a field on the output's
+  /// grid. @returns the voxels within the source, as bits
+  unsigned add_direct(std::int64_t i, std::int64_t j, std::int64_t k, std::size_t at) {
     const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
                              static_cast<double>(k)};
     double start[3];
@@ -71,12 +93,9 @@ class RowResampler {
       base[axis] = static_cast<float>(start[axis] - lower);
       whole[axis] = static_cast<int>(lower);
     }
-    const bool is_field_grid = op_.map.is_field_grid;
-    const bool has_field = op_.map.has_displacements();
-    unsigned inside = 0, in_field = 0xff;
-    if (has_field && !is_field_grid) in_field = sample_field(i, j, k);
-    const float* const field = is_field_grid ? op_.map.field.at(i, j, k) : sampled_;
-    const std::size_t at = static_cast<std::size_t>(cell_edge * taps_.count);
+    const bool has_field = op_.map.has_field();
+    const float* const field = has_field ? op_.map.field.at(i, j, k) : nullptr;
+    unsigned inside = 0;
     const RowTag d;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
       Vectors vectors;
@@ -90,10 +109,7 @@ class RowResampler {
         for (int c = 0; c < 3 && has_field; ++c) {
           local = hn::Add(local, hn::Mul(hn::Set(d, from_world_[axis][c]), vectors.at[c]));
         }
-        // Beyond any source, so that whole numbers of it fit; NaN is in no source.
-        constexpr float far = 0x1p24f;
-        local = hn::Min(hn::Max(local, hn::Set(d, -far)), hn::Set(d, far));
-        x.local[axis] = local;
+        x.local[axis] = hn::Min(hn::Max(local, hn::Set(d, -far)), hn::Set(d, far));
         x.whole[axis] = hn::Set(RowIntTag(), whole[axis]);
       }
       auto in_source = store_taps<true>(shape_, is_nearest_, x, at + lane, taps_);
@@ -102,28 +118,45 @@ class RowResampler {
       }
       inside |= bits_of(in_source, lane);
     }
-    first_[taps_.count] = row * op_.dims[0] + i;
-    fetch_ahead(at);
-    if (reads_past_end(at)) {
-      for (int lane = 0; lane < cell_edge; ++lane) {
-        op_.store(i + lane, j, k, first_[taps_.count] + lane);
-      }
-      return;
-    }
-    taps_.unit[taps_.count++] = {0, 0xff, static_cast<std::uint8_t>(inside & in_field)};
-    if (taps_.count == RowTaps<true>::row_units) flush();
+    return inside;
   }
 
-  /// Sets the displacements of eight voxels that are not those of the field.
-  /// @returns the voxels that are not background
-  unsigned sample_field(std::int64_t i, std::int64_t j, std::int64_t k) {
-    unsigned inside = 0xff;
-    for (int lane = 0; lane < cell_edge; ++lane) {
-      double vector[3];
-      if (!op_.map.field_vector(i + lane, j, k, vector)) inside &= ~(1u << lane);
-      for (int c = 0; c < 3; ++c) sampled_[3 * lane + c] = static_cast<float>(vector[c]);
+  /// The same by links.
+  unsigned add_linked(std::int64_t i, std::int64_t j, std::int64_t k, std::size_t at) {
+    EightPositions position;
+    const unsigned not_background = links_.positions(i, j, k, position);
+    alignas(64) float local[3][cell_edge];
+    alignas(64) std::int32_t whole[3][cell_edge];
+    const hn::CappedTag<double, cell_edge> dd;
+    const hn::Rebind<float, decltype(dd)> df;
+    const hn::Rebind<std::int32_t, decltype(dd)> di;
+    unsigned numbers = 0xff;
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(dd)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto any = hn::Load(dd, position.at[axis] + lane);
+        const auto is_number = hn::Eq(any, any);
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(dd, is_number, bits);
+        const unsigned all = (1u << hn::Lanes(dd)) - 1;
+        numbers &= ~((~unsigned{bits[0]} & all) << lane);
+        const auto x = hn::IfThenElseZero(is_number, any);
+        const auto near = hn::Min(hn::Max(x, hn::Set(dd, -far)), hn::Set(dd, far));
+        const auto lower = hn::Floor(near);
+        hn::Store(hn::DemoteTo(df, hn::Sub(near, lower)), df, local[axis] + lane);
+        hn::Store(hn::DemoteTo(di, lower), di, whole[axis] + lane);
+      }
     }
-    return inside;
+    unsigned inside = 0;
+    const RowTag d;
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      RowPositions<true> x;
+      for (int axis = 0; axis < 3; ++axis) {
+        x.local[axis] = hn::Load(d, local[axis] + lane);
+        x.whole[axis] = hn::Load(RowIntTag(), whole[axis] + lane);
+      }
+      inside |= bits_of(store_taps<true>(shape_, is_nearest_, x, at + lane, taps_), lane);
+    }
+    return inside & numbers & not_background;
   }
 
   /// Prefetches what the next slice of the output reads, if the source is turned little: the
@@ -160,13 +193,16 @@ class RowResampler {
     taps_.count = 0;
   }
 
+  /// Beyond any source, so that whole numbers of it fit; NaN is in no source.
+  static constexpr float far = 0x1p24f;
+
   const RowResampleOp<T>& op_;
+  RowLinks links_;
   SourceShape shape_;
   bool is_nearest_;
   std::int64_t voxels_;
   float step_[3];  // from voxel to voxel along a row
   float from_world_[3][3];
-  float sampled_[3 * cell_edge];
   RowTaps<true> taps_;
   std::int64_t first_[RowTaps<true>::row_units];  // voxel of the output
   alignas(64) float values_[cell_edge * RowTaps<true>::row_units];

@@ -21,6 +21,16 @@ void check_vectors(const Grid& grid, const std::vector<Number>& vectors, const s
   }
 }
 
+bool is_identity(const IndexAffine& map) {
+  for (int row = 0; row < 3; ++row) {
+    if (map.offset[row] != 0) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (map.linear[row][axis] != (row == axis ? 1 : 0)) return false;
+    }
+  }
+  return true;
+}
+
 struct LinkMaker {
   TransformLink operator()(const AffineTransform& affine) const {
     const auto is_finite = [](double x) { return std::isfinite(x); };
@@ -68,6 +78,46 @@ std::vector<TransformLink> links_of(const Transform& transform) {
     links.push_back(LinkMaker{}(std::get<BSplineTransform>(transform)));
   }
   return links;
+}
+
+std::vector<TransformLink> folded(const std::vector<TransformLink>& links) {
+  std::vector<TransformLink> fewer;
+  for (const TransformLink& link : links) {
+    if (link.is_affine() && !fewer.empty() && fewer.back().is_affine()) {
+      fewer.back().affine = composed(link.affine, fewer.back().affine);
+    } else {
+      fewer.push_back(link);
+    }
+    if (fewer.back().is_affine() && is_identity(fewer.back().affine)) fewer.pop_back();
+  }
+  return fewer;
+}
+
+const Grid* first_grid(const Transform& transform) {
+  struct {
+    const Grid* operator()(const AffineTransform&) const { return nullptr; }
+    const Grid* operator()(const DisplacementField& field) const { return &field.grid; }
+    const Grid* operator()(const BSplineTransform& spline) const { return &spline.grid; }
+    const Grid* operator()(const TransformChain& chain) const {
+      for (const SingleTransform& link : chain.links) {
+        if (const Grid* const grid = std::visit(*this, link)) return grid;
+      }
+      return nullptr;
+    }
+  } find;
+  return std::visit(find, transform);
+}
+
+IndexAffine composed(const IndexAffine& a, const IndexAffine& b) {
+  IndexAffine map;
+  a.map(b.offset, map.offset);
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      map.linear[row][axis] = 0;
+      for (int n = 0; n < 3; ++n) map.linear[row][axis] += a.linear[row][n] * b.linear[n][axis];
+    }
+  }
+  return map;
 }
 
 IndexAffine affine_map(const AffineTransform& affine) {

@@ -14,6 +14,16 @@ namespace tetwarp {
 ///         displacements or coefficients than the grid needs, a chain without links
 std::vector<TransformLink> links_of(const Transform& transform);
 
+/// The same transform by fewer links: affine ones that follow each other become one, and those that
+/// move nothing none. The result may be empty.
+std::vector<TransformLink> folded(const std::vector<TransformLink>& links);
+
+/// The grid of the first field or spline of a transform; null: it has none.
+const Grid* first_grid(const Transform& transform);
+
+/// a after b.
+IndexAffine composed(const IndexAffine& a, const IndexAffine& b);
+
 /// x -> matrix x + offset.
 IndexAffine affine_map(const AffineTransform& affine);
 

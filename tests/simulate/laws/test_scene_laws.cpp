@@ -128,5 +128,29 @@ TEST(SceneLaws, ShoulderSettlesUnderItsWeight) {
   EXPECT_NEAR(held / weight, 1, 0.01);
 }
 
+/// The tool presses at six places, half a second each, and lets go of each.
+TEST(SceneLaws, ShoulderIsPalpatedAtSixPlaces) {
+  Simulator simulator(shipped("shoulder"));
+  std::int64_t clamped = 0, unconverged = 0;
+  for (int n = 1; n <= 2000; ++n) {
+    simulator.step();
+    const StepRecord& record = simulator.record();
+    clamped += record.clamped_islands;
+    unconverged += !record.converged;
+    EXPECT_GT(record.smallest_distance, 0) << n;
+    const double force = norm(record.obstacle_forces.at(0));
+    for (const int second : {3, 4, 5, 6, 7, 8}) {
+      if (n == 200 * second + 100) {
+        EXPECT_GT(force, 0.1) << n;
+      }
+      if (n == 200 * second + 200) {
+        EXPECT_EQ(force, 0) << n;
+      }
+    }
+  }
+  EXPECT_EQ(clamped, 0);
+  EXPECT_EQ(unconverged, 0);
+}
+
 }  // namespace
 }  // namespace tetwarp::test

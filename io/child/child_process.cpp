@@ -1,6 +1,6 @@
 /// @file child_process.cpp
 /// Starts the program, and reads its pipe.
-#include "io/import/child_process.hpp"
+#include "io/child/child_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

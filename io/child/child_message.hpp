@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host/base/value_stream.hpp"
-#include "io/import/child_process.hpp"
+#include "io/child/child_process.hpp"
 
 namespace tetwarp {
 

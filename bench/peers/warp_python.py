@@ -1,0 +1,294 @@
+#!/usr/bin/env python3
+"""The warp from Python beside other packages, on the same two cases.
+
+    python3 bench/peers/warp_python.py prepare FOLDER     inputs and exact results, by tetwarp
+    python3 bench/peers/warp_python.py run PEER FOLDER    appends rows to FOLDER/rows.json; `all`:
+                                                          those that are installed
+    python3 bench/peers/warp_python.py table FOLDER       the table on standard output
+
+A PEER needs its own package only; each case runs in a process of its own, under Linux. Seconds are
+of the processor, one thread, the least of three runs (SciPy: of two), of the whole call: what
+follows from node positions alone is part of it. Memory is the peak of the process in the first run
+beyond its inputs and imports. Exact are the owners of the back end `reference`; of each covered
+voxel the source position and the linear sample are computed in float64. Wrong are covered voxels
+that differ by more than a thousandth of the range of the image.
+"""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+SIZE = 128
+
+
+def prepare(folder):
+    import tetwarp
+
+    folder.mkdir(parents=True, exist_ok=True)
+    volume = tetwarp.phantom(shape=(SIZE, SIZE, SIZE))
+    volume = tetwarp.Volume(volume.array, tetwarp.Grid(volume.shape))  # world = voxels
+    whole = tetwarp.lattice_mesh(volume, cells=10)
+    torso = tetwarp.lattice_mesh(volume, cells=10, threshold=0.05)
+    for name, mesh, kind in (("twisted box", whole, "twist"), ("bent torso", torso, "bend")):
+        deformed = tetwarp.deform(*mesh, kind=kind, amount=0.5)
+        owner = tetwarp.rasterize(deformed, mesh.cells, reference=volume, backend="reference")
+        position = np.stack(np.meshgrid(*[np.arange(SIZE, dtype=float)] * 3, indexing="ij"), -1)
+        source = np.full(position.shape, np.nan)
+        inside = owner >= 0
+        corners = deformed[mesh.cells]
+        edges = np.linalg.inv((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1))
+        of = owner[inside]
+        xyz = position[inside][:, ::-1]
+        weights = np.einsum("vij,vj->vi", edges[of], xyz - corners[of, 0])
+        rest = mesh.points[mesh.cells][of]
+        source[inside] = (rest[:, 0] + np.einsum("vi,vij->vj", weights, rest[:, 1:] - rest[:, :1])
+                          )[:, ::-1]
+        exact = np.zeros(volume.shape)
+        exact[inside] = linear(volume.array.astype(float), source[inside])
+        np.savez(folder / f"{name}.npz", image=volume.array, rest=mesh.points, cells=mesh.cells,
+                 deformed=deformed, owner=owner, source=source, exact=exact)
+        print(f"{name}: {len(mesh.cells)} tetrahedra, {inside.mean():.1%} of {SIZE}^3 covered")
+
+
+def linear(image, zyx):
+    """Linear samples of an image that is continued by its border, float64."""
+    last = np.array(image.shape) - 1
+    zyx = np.clip(zyx, 0, last)
+    low = np.minimum(zyx.astype(int), np.maximum(last - 1, 0))
+    part = zyx - low
+    result = np.zeros(len(zyx))
+    for corner in np.ndindex(2, 2, 2):
+        weight = np.prod(np.where(corner, part, 1 - part), axis=1)
+        result += weight * image[tuple((low + corner).T)]
+    return result
+
+
+# Each peer: function of the case that returns (samples, covered or None). What is imported before
+# the clock starts is in `load`.
+
+
+def tetwarp_call(case, threads=1):
+    import tetwarp
+
+    def call():
+        result = tetwarp.warp(case["image"], case["rest"], case["cells"], case["deformed"],
+                              outputs=("mask",), threads=threads)
+        return result.volume, result.mask > 0
+
+    return call
+
+
+def spam_call(case):
+    import contextlib
+    import io
+
+    import spam.DIC
+    import spam.label
+
+    rest, moved = (np.ascontiguousarray(case[k][:, ::-1]) for k in ("rest", "deformed"))
+    cells = case["cells"].astype("<u4")
+
+    def call():
+        with contextlib.redirect_stdout(io.StringIO()):
+            label = spam.label.labelTetrahedra(case["image"].shape, moved, cells, nThreads=1)
+            out = spam.DIC.applyMeshTransformation(case["image"], rest, cells, moved - rest,
+                                                   imTetLabel=label, nThreads=1)
+        return out, label < len(cells)
+
+    return call
+
+
+def vtk_call(case):
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+
+    vtk.vtkSMPTools.Initialize(1)
+    shape = case["image"].shape
+
+    def call():
+        grid, points, cells = vtk.vtkUnstructuredGrid(), vtk.vtkPoints(), vtk.vtkCellArray()
+        points.SetData(numpy_to_vtk(case["deformed"]))
+        grid.SetPoints(points)
+        cells.SetData(4, numpy_to_vtkIdTypeArray(case["cells"].astype(np.int64).ravel()))
+        grid.SetCells(vtk.VTK_TETRA, cells)
+        rest = numpy_to_vtk(case["rest"])
+        rest.SetName("rest")
+        grid.GetPointData().AddArray(rest)
+        where = vtk.vtkImageData()
+        where.SetDimensions(*reversed(shape))
+        probe = vtk.vtkProbeFilter()
+        probe.SetInputData(where)
+        probe.SetSourceData(grid)
+        locator = vtk.vtkStaticCellLocator()
+        probe.SetCellLocatorPrototype(locator)
+        probe.Update()
+        found = probe.GetOutput().GetPointData()
+        valid = vtk_to_numpy(found.GetArray(probe.GetValidPointMaskArrayName())).reshape(shape) > 0
+        source = vtk_to_numpy(found.GetArray("rest"))
+        image = vtk.vtkImageData()
+        image.SetDimensions(*reversed(shape))
+        image.GetPointData().SetScalars(numpy_to_vtk(case["image"].ravel()))
+        sample_at = vtk.vtkPolyData()
+        places = vtk.vtkPoints()
+        places.SetData(numpy_to_vtk(np.clip(source, 0, np.array(shape[::-1]) - 1)))
+        sample_at.SetPoints(places)
+        second = vtk.vtkProbeFilter()
+        second.SetInputData(sample_at)
+        second.SetSourceData(image)
+        second.Update()
+        samples = vtk_to_numpy(second.GetOutput().GetPointData().GetScalars()).reshape(shape)
+        return np.where(valid, samples, 0), valid
+
+    return call
+
+
+def scipy_call(case):
+    from scipy.interpolate import LinearNDInterpolator
+    from scipy.ndimage import map_coordinates
+
+    def call():
+        grid = np.stack(np.meshgrid(*[np.arange(SIZE, dtype=float)] * 3, indexing="ij"), -1)
+        rest = LinearNDInterpolator(case["deformed"], case["rest"])(grid[..., ::-1])
+        valid = ~np.isnan(rest[..., 0])
+        zyx = np.moveaxis(np.where(valid[..., None], rest, 0)[..., ::-1], -1, 0)
+        out = map_coordinates(case["image"], zyx, order=1, mode="nearest")
+        return np.where(valid, out, 0), valid
+
+    return call
+
+
+def sitk_call(case):
+    import SimpleITK as sitk
+
+    sitk.ProcessObject.SetGlobalDefaultNumberOfThreads(1)
+    grid = np.stack(np.meshgrid(*[np.arange(SIZE, dtype=float)] * 3, indexing="ij"), -1)
+    valid = case["owner"] >= 0
+    field = np.where(valid[..., None], case["source"] - grid, 0)[..., ::-1].copy()
+
+    def call():
+        vectors = sitk.GetImageFromArray(field, isVector=True)
+        transform = sitk.DisplacementFieldTransform(vectors)
+        image = sitk.GetImageFromArray(case["image"])
+        out = sitk.Resample(image, image, transform, sitk.sitkLinear, 0.0)
+        return np.where(valid, sitk.GetArrayViewFromImage(out), 0), None
+
+    return call
+
+
+def torch_call(case):
+    import torch
+
+    torch.set_num_threads(1)
+    valid = case["owner"] >= 0
+    unit = np.where(valid[..., None], case["source"], 0)[..., ::-1] / (SIZE - 1) * 2 - 1
+    unit = unit.astype(np.float32)
+
+    def call():
+        image = torch.from_numpy(case["image"])[None, None]
+        out = torch.nn.functional.grid_sample(image, torch.from_numpy(unit)[None],
+                                              padding_mode="border", align_corners=True)
+        return np.where(valid, out[0, 0].numpy(), 0), None
+
+    return call
+
+
+PEERS = {
+    "tetwarp": ("tetwarp", tetwarp_call, "whole job"),
+    "spam": ("spam", spam_call, "whole job"),
+    "vtk": ("vtk", vtk_call, "whole job, two vtkProbeFilter"),
+    "scipy": ("scipy", scipy_call, "whole job, cells of its own: LinearNDInterpolator"),
+    "simpleitk": ("SimpleITK", sitk_call, "half: the exact field is given"),
+    "torch": ("torch", torch_call, "half: exact positions are given"),
+}
+
+
+def memory(name):
+    """A number of /proc/self/status [byte]."""
+    text = Path("/proc/self/status").read_text(encoding="ascii")
+    return 1024 * int(text.split(name + ":")[1].split()[0])
+
+
+def measured(call, runs):
+    """Least seconds, results of the first of these runs, its peak of memory beyond what was there
+    [byte], and whether all gave the same bits.
+    """
+    Path("/proc/self/clear_refs").write_text("5", encoding="ascii")  # VmHWM begins anew
+    before = memory("VmRSS")
+    seconds, results = [], []
+    for _ in range(runs):
+        start = time.process_time()
+        results.append(call())
+        seconds.append(time.process_time() - start)
+        if len(results) == 1:
+            peak = memory("VmHWM") - before
+    same = all(np.array_equal(results[0][0], other[0]) for other in results)
+    return min(seconds), results[0], peak, same
+
+
+def version_of(module):
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(module)
+    except PackageNotFoundError:
+        return sys.modules[module.split(".")[0]].__version__
+
+
+def run(peer, folder, path):
+    module, make, job = PEERS[peer]
+    case = dict(np.load(path))
+    seconds, (samples, covered), peak, same = measured(make(case), 2 if peer == "scipy" else 3)
+    inside = case["owner"] >= 0
+    error = np.abs(samples - case["exact"])
+    value_range = np.ptp(case["image"])
+    given = covered is None
+    row = dict(
+        case=path.stem, peer=f"{peer} {version_of(module)}", job=job, seconds=seconds,
+        megabytes=peak / 2**20, missing=None if given else int((inside & ~covered).sum()),
+        beyond=None if given else int((covered & ~inside).sum()),
+        wrong=int((error[inside] > 1e-3 * value_range).sum()),
+        error=float(error[inside & (covered if not given else inside)].max() / value_range),
+        same=bool(same))
+    with open(folder / "rows.json", "a", encoding="utf8") as file:
+        file.write(json.dumps(row) + "\n")
+
+
+def table(folder):
+    rows = [json.loads(line) for line in open(folder / "rows.json", encoding="utf8")]
+    for case in sorted({row["case"] for row in rows}):
+        print(f"\n{case}\n\n| package | job | s | MB | missing | beyond | wrong | largest error | "
+              "same bits |\n|---|---|--:|--:|--:|--:|--:|--:|---|")
+        for row in rows:
+            if row["case"] != case:
+                continue
+            counts = " | ".join("given" if row[k] is None else f"{row[k]:,}"
+                                for k in ("missing", "beyond"))
+            print(f"| {row['peer']} | {row['job']} | {row['seconds']:.2f} | "
+                  f"{row['megabytes']:.0f} | {counts} | {row['wrong']:,} | {row['error']:.1e} | "
+                  f"{'yes' if row['same'] else 'no'} |")
+
+
+def main():
+    if len(sys.argv) == 3 and sys.argv[1] == "prepare":
+        prepare(Path(sys.argv[2]))
+    elif len(sys.argv) == 3 and sys.argv[1] == "table":
+        table(Path(sys.argv[2]))
+    elif len(sys.argv) == 4 and sys.argv[1] == "run" and sys.argv[2] in (*PEERS, "all"):
+        for peer in PEERS if sys.argv[2] == "all" else [sys.argv[2]]:
+            for path in sorted(Path(sys.argv[3]).glob("*.npz")):
+                command = [sys.executable, __file__, "run", peer, sys.argv[3], str(path)]
+                done = subprocess.run(command, text=True, stderr=subprocess.PIPE, check=False)
+                if done.returncode:
+                    print(f"{peer}: left out: {done.stderr.strip().splitlines()[-1]}")
+    elif len(sys.argv) == 5 and sys.argv[1] == "run":
+        run(sys.argv[2], Path(sys.argv[3]), Path(sys.argv[4]))
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The computation of the module, on objects of VTK alone."""

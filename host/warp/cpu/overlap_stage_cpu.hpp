@@ -1,0 +1,39 @@
+/// @file overlap_stage_cpu.hpp
+/// Stage "raster" of a warp that keeps totals on host threads, cell by cell.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "host/exec/exec_cpu.hpp"
+#include "host/warp/cpu/cell_overlap.hpp"
+#include "host/warp/overlap_stage.hpp"
+
+namespace tetwarp {
+
+/// Values as those of voxel_overlap(), to within 2^-44 of the largest sample around: the integrals
+/// are the same, over facets that neighbors share. The same bits for any number of threads.
+///
+/// Where many voxels of the source go into one of the output, so that facets have many parts,
+/// voxel_overlap() is taken.
+template <>
+class OverlapStage<CpuExec> {
+ public:
+  void run(CpuExec& exec,
+           const VoxelOverlapOp& op,
+           View<const Node> nodes,
+           View<const Node> rest,
+           double voxel_ratio,
+           const ProgressPart& progress);
+
+ private:
+  void set_up(View<const std::int32_t> tets, View<const Node> rest);
+  double compression(const VoxelOverlapOp& op, double voxel_ratio);
+  static void run_voxels(CpuExec& exec, VoxelOverlapOp op, const ProgressPart& progress);
+
+  std::vector<std::int32_t> neighbors_;    ///< from face_neighbors()
+  std::vector<double> rest_volumes_;       ///< six times those of the tetrahedra, signed
+  std::vector<std::int8_t> sides_;         ///< see OverlapMesh
+  std::vector<CellOverlapMemory> memory_;  ///< one per task
+};
+
+}  // namespace tetwarp

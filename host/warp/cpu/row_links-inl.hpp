@@ -1,0 +1,241 @@
+/// @file row_links-inl.hpp
+/// Where transforms that follow each other take eight voxels of a row, in float64. Included once
+/// per vector instruction set.
+#if defined(TETWARP_ROW_LINKS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_ROW_LINKS_INL
+#undef TETWARP_ROW_LINKS_INL
+#else
+#define TETWARP_ROW_LINKS_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/warp/row_resample.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Positions of eight voxels by axis.
+struct alignas(64) EightPositions {
+  double at[3][cell_edge];
+};
+
+/// Coordinates of a grid's index space, split for interpolation.
+struct alignas(64) EightIndices {
+  double lower[3][cell_edge];
+  double fraction[3][cell_edge];
+  unsigned inside;  ///< bits of those within the grid; all are clamped to it
+};
+
+/// The links of a map, eight voxels at a time.
+class RowLinks {
+ public:
+  /// @param map    of the job, with links; must outlive the object
+  explicit RowLinks(const ResampleMap& map) : map_(map) {}
+
+  /// @param x  out, positions in the source's index space
+  /// @returns the voxels that are not background, as bits
+  unsigned positions(std::int64_t i, std::int64_t j, std::int64_t k, EightPositions& x) const {
+    const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
+                             static_cast<double>(k)};
+    EightPositions at, start;
+    EightIndices index;
+    along_row(map_.to_first, voxel, x);
+    along_row(map_.to_first_index, voxel, at);
+    const TransformLink& first = map_.links[0];
+    for (int axis = 0; axis < 3; ++axis) split(at.at[axis], bounds_of(first, axis), axis, index);
+    unsigned inside = move_at(first, index, x);
+    for (std::int64_t n = 1; n < map_.links.size; ++n) inside &= move(map_.links[n], x);
+    along_row(map_.to_world, voxel, start);
+    along_row(map_.to_source, voxel, at);
+    const Tag d;
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      hn::Vec<Tag> vector[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        vector[axis] = hn::Sub(hn::Load(d, x.at[axis] + lane), hn::Load(d, start.at[axis] + lane));
+      }
+      for (int row = 0; row < 3; ++row) {
+        const double* const m = map_.from_world[row];
+        auto sum = hn::Load(d, at.at[row] + lane);
+        for (int c = 0; c < 3; ++c) sum = hn::Add(sum, hn::Mul(hn::Set(d, m[c]), vector[c]));
+        hn::Store(sum, d, x.at[row] + lane);
+      }
+    }
+    return map_.only_in_field ? inside : 0xff;
+  }
+
+ private:
+  using Tag = hn::CappedTag<double, cell_edge>;
+
+  /// Positions of eight voxels of a row.
+  static void along_row(const IndexAffine& map, const double* voxel, EightPositions& x) {
+    double start[3];
+    map.map(voxel, start);
+    const Tag d;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto step = hn::Set(d, map.linear[axis][0]);
+      for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+        const auto steps = hn::Iota(d, static_cast<double>(lane));
+        hn::Store(hn::Add(hn::Set(d, start[axis]), hn::Mul(step, steps)), d, x.at[axis] + lane);
+      }
+    }
+  }
+
+  /// Row `row` of map(x).
+  static hn::Vec<Tag> mapped(const double* m, double offset, const hn::Vec<Tag>* x) {
+    const Tag d;
+    auto sum = hn::Set(d, offset);
+    for (int c = 0; c < 3; ++c) sum = hn::Add(sum, hn::Mul(hn::Set(d, m[c]), x[c]));
+    return sum;
+  }
+
+  /// TransformLink::move() of eight points. @returns those within its field or spline, as bits
+  static unsigned move(const TransformLink& link, EightPositions& x) {
+    const Tag d;
+    EightPositions at;
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      hn::Vec<Tag> from[3];
+      for (int c = 0; c < 3; ++c) from[c] = hn::Load(d, x.at[c] + lane);
+      if (link.is_affine()) {
+        for (int row = 0; row < 3; ++row) {
+          const double* const m = link.affine.linear[row];
+          hn::Store(mapped(m, link.affine.offset[row], from), d, x.at[row] + lane);
+        }
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) from[c] = hn::Sub(from[c], hn::Set(d, link.to_index.origin[c]));
+      for (int row = 0; row < 3; ++row) {
+        hn::Store(mapped(link.to_index.linear[row], 0, from), d, at.at[row] + lane);
+      }
+    }
+    if (link.is_affine()) return 0xff;
+    EightIndices index;
+    for (int axis = 0; axis < 3; ++axis) split(at.at[axis], bounds_of(link, axis), axis, index);
+    return move_at(link, index, x);
+  }
+
+  /// Bounds of an index: those within which a grid has vectors, those to which it is clamped, and
+  /// the largest lower neighbor.
+  struct Bounds {
+    double begin, end, low, high, last_lower;
+  };
+
+  static Bounds bounds_of(const TransformLink& link, int axis) {
+    if (link.field.vectors != nullptr) {
+      const double last = static_cast<double>(link.field.dims[axis] - 1);
+      return {-0.5, last + 0.5, 0, last, last};
+    }
+    const double last = static_cast<double>(link.spline.dims[axis] - 2);
+    constexpr double rounding = 1e-9;  // of positions on the rim, as in SplineView
+    return {1 - rounding, last + rounding, 1, last, last - 1};
+  }
+
+  static void split(const double* at, const Bounds& bounds, int axis, EightIndices& index) {
+    const Tag d;
+    unsigned inside = 0;
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      auto x = hn::Load(d, at + lane);
+      const auto is_inside =
+          hn::And(hn::Ge(x, hn::Set(d, bounds.begin)), hn::Le(x, hn::Set(d, bounds.end)));
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, is_inside, bits);
+      inside |= unsigned{bits[0]} << lane;
+      x = hn::IfThenElse(is_inside, x, hn::Set(d, bounds.low));  // NaN is not inside
+      x = hn::Min(hn::Max(x, hn::Set(d, bounds.low)), hn::Set(d, bounds.high));
+      const auto lower = hn::Min(hn::Floor(x), hn::Set(d, bounds.last_lower));
+      hn::Store(lower, d, index.lower[axis] + lane);
+      hn::Store(hn::Sub(x, lower), d, index.fraction[axis] + lane);
+    }
+    index.inside = axis == 0 ? inside : index.inside & inside;
+  }
+
+  static unsigned move_at(const TransformLink& link, const EightIndices& index, EightPositions& x) {
+    for (int lane = 0; lane < cell_edge; ++lane) {
+      if ((index.inside >> lane & 1) == 0) continue;
+      if (link.field.vectors != nullptr) {
+        add_field(link.field, index, lane, x);
+      } else {
+        add_spline(link.spline, index, lane, x);
+      }
+    }
+    return index.inside;
+  }
+
+  /// Adds the vector of a field to a point: its three components at once.
+  static void add_field(const FieldView& field,
+                        const EightIndices& index,
+                        int lane,
+                        EightPositions& x) {
+    const hn::FixedTag<float, 4> d;
+    std::int64_t lower[3], step[3], stride = 3;
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = static_cast<std::int64_t>(index.lower[axis][lane]);
+      // A neighbor of weight zero is not read: it may not exist, or not be a number.
+      step[axis] = index.fraction[axis][lane] > 0 ? stride : 0;
+      stride *= field.dims[axis];
+    }
+    const float* const v = field.at(lower[0], lower[1], lower[2]);
+    const std::int64_t farthest = (v - field.vectors) + step[0] + step[1] + step[2];
+    alignas(16) float vector[4];
+    if (farthest + 4 > stride) {  // a load of four numbers would end beyond the last vector
+      const double at[3] = {index.lower[0][lane] + index.fraction[0][lane],
+                            index.lower[1][lane] + index.fraction[1][lane],
+                            index.lower[2][lane] + index.fraction[2][lane]};
+      double sum[3];
+      field.sample(at, sum);
+      for (int axis = 0; axis < 3; ++axis) x.at[axis][lane] += sum[axis];
+      return;
+    }
+    const auto fx = hn::Set(d, static_cast<float>(index.fraction[0][lane]));
+    const auto fy = hn::Set(d, static_cast<float>(index.fraction[1][lane]));
+    const auto fz = hn::Set(d, static_cast<float>(index.fraction[2][lane]));
+    const auto lerp = [](auto f, auto a, auto b) { return hn::Add(a, hn::Mul(f, hn::Sub(b, a))); };
+    const auto along_x = [&](const float* from) {
+      return lerp(fx, hn::LoadU(d, from), hn::LoadU(d, from + step[0]));
+    };
+    const auto near = lerp(fy, along_x(v), along_x(v + step[1]));
+    const auto next = lerp(fy, along_x(v + step[2]), along_x(v + step[2] + step[1]));
+    hn::Store(lerp(fz, near, next), d, vector);
+    for (int axis = 0; axis < 3; ++axis) x.at[axis][lane] += static_cast<double>(vector[axis]);
+  }
+
+  /// Adds the vector of a spline to a point: rows of four coefficients at once.
+  static void add_spline(const SplineView& spline,
+                         const EightIndices& index,
+                         int lane,
+                         EightPositions& x) {
+    std::int64_t first[3];
+    double weights[3][4];
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = static_cast<std::int64_t>(index.lower[axis][lane]) - 1;
+      set_cubic_weights(index.fraction[axis][lane], weights[axis]);
+    }
+    double sums[12] = {};  // of the components of four neighbors along x
+    for (int c = 0; c < 4; ++c) {
+      for (int b = 0; b < 4; ++b) {
+        const std::int64_t row = (first[2] + c) * spline.dims[1] + first[1] + b;
+        const double* const v = spline.coefficients + 3 * (row * spline.dims[0] + first[0]);
+        const double weight = weights[2][c] * weights[1][b];
+        for (int n = 0; n < 12; ++n) sums[n] += weight * v[n];
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int a = 0; a < 4; ++a) x.at[axis][lane] += weights[0][a] * sums[3 * a + axis];
+    }
+  }
+
+  const ResampleMap& map_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

@@ -1,0 +1,145 @@
+"""Long runs, threads, forks and sub-interpreters."""
+
+import gc
+import os
+import resource
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+
+def peak_of(code):
+    """Peak of memory of a new process that runs `code` [byte]; it prints nothing else."""
+    program = f"import resource, numpy as np, tetwarp\n{code}\n" \
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    done = subprocess.run([sys.executable, "-c", program], text=True, capture_output=True,
+                          env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False)
+    assert done.returncode == 0, done.stderr
+    return 1024 * int(done.stdout)
+
+
+def test_a_warp_holds_source_and_output_and_no_copy_of_either():
+    """128 MiB each: a copy of one would be as much again."""
+    setup = """
+shape = (256, 256, 512)
+samples = np.ones(shape, np.float32)
+tet = np.array([(0, 0, 0), (90, 0, 0), (0, 90, 0), (0, 0, 90.0)])
+out = np.zeros(shape, np.float32)
+out[:] = 1
+"""
+    arrays = peak_of(setup)
+    warped = peak_of(setup + "tetwarp.warp(samples, tet, [(0, 1, 2, 3)], tet + 0.5, out=out)")
+
+    assert warped - arrays < 24 * 2**20
+
+
+def resident():
+    """Memory of this process [KiB]."""
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * resource.getpagesize() // 1024
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc")
+@pytest.mark.parametrize("keeps_warper, count, bytes_per_warp", [(False, 3000, 256),
+                                                                 (True, 10000, 512)])
+def test_memory_stays_the_same(single_tet, keeps_warper, count, bytes_per_warp):
+    """A Warper keeps counts and times of its steps, which are no 400 bytes each."""
+    points, cells = single_tet
+    samples = np.random.default_rng(1).random((6, 6, 6), np.float32)
+    warper = tetwarp.Warper(samples, points, cells)
+    places = [points + 0.01 * number for number in range(7)]
+
+    def rounds(count):
+        for number in range(count):
+            moved = places[number % 7]
+            warper(moved) if keeps_warper else tetwarp.warp(
+                samples, points, cells, moved, threads=1)
+        gc.collect()
+        return resident()
+
+    warm = rounds(500)
+
+    assert 1024 * (rounds(count) - warm) < count * bytes_per_warp
+
+
+def test_arrays_may_be_deleted_while_they_are_in_use(volume, mesh, twisted):
+    expected = tetwarp.warp(volume, *mesh, twisted).volume
+    held = {"samples": volume.array.copy(), "moved": twisted.copy()}
+    warper = tetwarp.Warper(held["samples"], *mesh, affine=volume.affine)
+
+    def delete(fraction):
+        if held:
+            held.clear()
+            gc.collect()
+            np.full(volume.shape, -1, np.float32)  # would take freed memory
+        return True
+
+    result = warper(held["moved"], progress=delete)
+
+    assert not held and np.array_equal(result.volume, expected)
+
+
+def test_threads_warp_side_by_side_with_objects_of_their_own(volume, mesh):
+    steps = [tetwarp.deform(*mesh, kind="twist", amount=0.1 * n) for n in range(1, 5)]
+    expected = [tetwarp.warp(volume, *mesh, step).volume for step in steps]
+    results = [None] * len(steps)
+
+    def work(number):
+        with tetwarp.Warper(volume, *mesh) as warper:
+            for _ in range(5):
+                results[number] = warper(steps[number]).volume
+
+    threads = [threading.Thread(target=work, args=(n,)) for n in range(len(steps))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+    assert all(np.array_equal(a, b) for a, b in zip(results, expected))
+
+
+def test_a_fork_warps_on(volume, mesh, twisted):
+    expected = tetwarp.warp(volume, *mesh, twisted, threads=2).volume
+    warper = tetwarp.Warper(volume, *mesh, threads=2)
+    warper(twisted)
+    child = os.fork()
+    if child == 0:
+        same = np.array_equal(tetwarp.warp(volume, *mesh, twisted, threads=2).volume, expected)
+        same = same and np.array_equal(warper(twisted).volume, expected)
+        os._exit(0 if same else 1)
+
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def test_sub_interpreters_are_refused_in_words(tmp_path):
+    pytest.importorskip("_interpreters" if sys.version_info >= (3, 13) else "_xxsubinterpreters")
+    module = "_interpreters" if sys.version_info >= (3, 13) else "_xxsubinterpreters"
+    code = tmp_path / "code.py"
+    code.write_text(f"""
+import {module} as interpreters
+import tetwarp._core
+number = interpreters.create()
+text = '''
+try:
+    import importlib.util
+    spec = importlib.util.spec_from_file_location("tetwarp._core", {tetwarp._core.__file__!r})
+    spec.loader.exec_module(importlib.util.module_from_spec(spec))
+except ImportError as error:
+    print("refused:", error)
+else:
+    print("imported")
+'''
+interpreters.run_string(number, text) if hasattr(interpreters, "run_string") else \\
+    interpreters.exec(number, text)
+""")
+
+    done = subprocess.run([sys.executable, code], text=True, capture_output=True,
+                          env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False)
+
+    assert done.returncode == 0, done.stderr
+    assert "refused:" in done.stdout and "interpreter" in done.stdout
