@@ -6,8 +6,8 @@ if(NOT TETWARP_PYTHON3)
 endif()
 
 set(tetwarp_pages CHANGELOG CONTRIBUTING README docs/architecture docs/benchmarks docs/compare docs/contact
-  docs/coordinates docs/cuda docs/day docs/formats docs/glossary docs/guide docs/python docs/scenes docs/screens
-  docs/simulate docs/tried docs/view)
+  docs/coordinates docs/cuda docs/day docs/formats docs/gallery docs/glossary docs/guide docs/python
+  docs/scenes docs/screens docs/simulate docs/tried docs/view)
 list(TRANSFORM tetwarp_pages REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.md")
 set(tetwarp_docs_test ${TETWARP_PYTHON3} -B ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py)
 add_custom_command(OUTPUT docs_blocks.cpp
