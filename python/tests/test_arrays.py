@@ -183,6 +183,7 @@ def test_outputs_must_be_writable_and_apart_from_sources(volume, mesh):
     (dict(direction=np.eye(2)), "direction: expected 3 x 3 numbers, got 4"),
     (dict(shape=(4, 0, 6)), "shape: expected 1 to .* voxels along each axis"),
     (dict(shape=(4, 6)), "shape: expected three numbers"),
+    (dict(shape=(4, 5.5, 6)), "shape: expected a whole number, got .*5.5"),
 ])
 def test_grids_are_checked(keywords, text):
     with pytest.raises(ValueError, match=text):

@@ -109,6 +109,10 @@ def test_wrong_rows_are_named():
         tetwarp.ContactProblem(**GLOBAL, rolling=dict(contact=[0]))
     with pytest.raises(ValueError, match="bilateral.compliance"):
         tetwarp.solve_contacts(**GLOBAL, bilateral=dict(rows, compliance=[-1]))
+    with pytest.raises(ValueError, match="bilateral.group_start: expected integers, got float64"):
+        tetwarp.ContactProblem(**GLOBAL, bilateral=dict(rows, group_start=[0, 1.5]))
+    with pytest.raises(ValueError, match="rolling.contact: expected numbers up to 2147483647"):
+        tetwarp.ContactProblem(**GLOBAL, rolling=dict(jacobian=np.eye(3, 6), contact=[2**40]))
 
 
 def test_a_solver_solves_a_series():

@@ -138,6 +138,11 @@ def test_a_dose_that_is_warped_keeps_unit_and_plan(dose):
     (lambda s: [setattr(d, "ImagePositionPatient", [10, -20, d.ImagePositionPatient[2]])
                 for d in s], "tilted gantry"),
     (lambda s: s[0].pop("ImageOrientationPatient"), "expected ImageOrientationPatient"),
+    (lambda s: s[0].pop("PixelSpacing"), "instance 1 has no PixelSpacing"),
+    (lambda s: s[0].pop("SeriesInstanceUID"), "instance 1 has no SeriesInstanceUID"),
+    (lambda s: setattr(s[1], "PhotometricInterpretation", "PALETTE COLOR"), "palettes and tables"),
+    (lambda s: setattr(s[1], "ModalityLUTSequence", []), "palettes and tables"),
+    (lambda s: s.append("missing.dcm"), "missing.dcm: No such file"),
 ])
 def test_what_is_no_series_is_refused(pixels, break_it, message):
     slices = sorted(ct_series(pixels), key=lambda d: d.InstanceNumber)
@@ -145,6 +150,38 @@ def test_what_is_no_series_is_refused(pixels, break_it, message):
 
     with pytest.raises(ValueError, match=message):
         tetwarp.read_dicom(slices, axes="LPS")
+
+
+def test_a_slope_without_a_value_is_1(pixels):
+    slices = ct_series(pixels, None, None)
+
+    assert np.array_equal(tetwarp.read_dicom(slices, axes="LPS").array, pixels)
+
+
+@pytest.mark.parametrize("offsets, message", [
+    (None, "expected a GridFrameOffsetVector of 4 frames, found 1"),
+    ([0, 5], "expected a GridFrameOffsetVector of 4 frames, found 2"),
+    ([100, 102, 104, 106], "begins neither at 0 nor"),
+])
+def test_doses_whose_frames_have_no_place_are_refused(dose, offsets, message):
+    made = tetwarp.to_rtdose(dose, pydicom.Dataset(), axes="LPS")
+    if offsets is None:
+        made.pop("GridFrameOffsetVector")
+    else:
+        made.GridFrameOffsetVector = offsets
+
+    with pytest.raises(ValueError, match=message):
+        tetwarp.read_dicom(made, axes="LPS")
+
+
+def test_decimals_of_a_dose_have_at_most_16_letters(dose):
+    grid = tetwarp.Grid(dose.shape, (1 / 3, 1.1, 2.4), (5, 6, -7), TILT)
+
+    made = tetwarp.to_rtdose(tetwarp.Volume(dose.array, grid), pydicom.Dataset(), axes="LPS")
+
+    for element in made:
+        values = element.value if element.VM > 1 else [element.value]
+        assert element.VR != "DS" or all(len(str(value)) <= 16 for value in values), element.name
 
 
 def test_bad_doses_and_axes_are_named(dose):

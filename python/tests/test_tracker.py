@@ -164,6 +164,17 @@ def test_bad_bodies_options_and_orders_are_named():
         tetwarp.ContactTracker([dict(mu=1)])
     with pytest.raises(ValueError, match="integrator: 'rk4' is not one of exact, explicit-euler"):
         tetwarp.ContactTracker(integrator="rk4")
+    with pytest.raises(ValueError, match="threads: expected a whole number, got 1.9"):
+        tetwarp.ContactTracker(threads=1.9)
     tracker.begin_step(found(0), (REST, REST), DT)
+    system, jacobian = np.eye(3), np.ones((6, 3))
+    with pytest.raises(ValueError, match="problem: expected a jacobian of 3 rows"):
+        tracker.fill(tetwarp.ContactProblem(system=system, jacobian=jacobian, load=np.zeros(3)))
+    problem = tracker.fill(tetwarp.ContactProblem(system=system, jacobian=np.eye(3),
+                                                  load=np.zeros(3)))
+    with pytest.raises(ValueError, match="velocity: the solution has its own"):
+        tracker.end_step(tetwarp.solve_contacts(problem), (REST, REST), velocity=np.zeros((1, 3)))
+    with pytest.raises(ValueError, match=r"velocity: expected numbers of shape \(1, 3\)"):
+        tracker.end_step(np.zeros((1, 3)), (REST, REST), velocity=np.zeros((2, 3)))
     with pytest.raises(ValueError, match=r"solution: impulse: expected numbers of shape \(1, 3\)"):
         tracker.end_step(np.zeros((2, 3)), (REST, REST))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import sys
 from typing import Any, Callable, Sequence
 
@@ -93,6 +94,25 @@ def number_of(value: Any, name: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise ValueError(f"{name}: expected a number, got {value!r}") from None
+
+
+def integer_of(value: Any, name: str) -> int:
+    """A whole number; one with a fraction is refused, not cut."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise ValueError(f"{name}: expected a whole number, got {value!r}") from None
+
+
+def integers_of(value: Any, name: str, dtype: Any = np.int32) -> np.ndarray:
+    """Whole numbers of one axis; copied only if they are not of this type."""
+    array = np.asarray(array_of(value, name)).reshape(-1)
+    if array.size and array.dtype.kind not in "iu":
+        raise ValueError(f"{name}: expected integers, got {array.dtype}")
+    if array.size and max(int(array.max()), -int(array.min())) > np.iinfo(dtype).max:
+        raise ValueError(f"{name}: expected numbers up to {np.iinfo(dtype).max}, found "
+                         f"{array.min()} to {array.max()}")
+    return np.ascontiguousarray(array, dtype=dtype)
 
 
 def nodes_of(value: Any, name: str, count: int | None = None) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import points_of, triangles_of
+from ._arrays import integer_of, points_of, triangles_of
 
 
 @dataclass(eq=False)
@@ -86,7 +86,8 @@ def certify(
         triangles.append(triangles_of(surface[2], f"{name}: triangles", len(starts[-1])))
     found = _core.certify(
         starts, ends, triangles, self=bool(self_intersections),
-        most_intervals=int(most_intervals), threads=int(threads),
+        most_intervals=integer_of(most_intervals, "most_intervals"),
+        threads=integer_of(threads, "threads"),
     )
     return Certificate(**(found | {"meets": found["meets"].view(bool)}))
 

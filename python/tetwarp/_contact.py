@@ -9,7 +9,7 @@ from typing import Any, Callable, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import numbers_of
+from ._arrays import array_of, integer_of, integers_of, numbers_of
 
 
 class Csr(NamedTuple):
@@ -44,7 +44,7 @@ def csr_of(value: Any, name: str) -> Csr:
     if isinstance(value, tuple) and len(value) == 4:
         data, indices, indptr, shape = value
     else:
-        dense = np.asarray(value)
+        dense = array_of(value, name)
         if dense.ndim != 2 or dense.dtype.kind not in "iuf":
             raise ValueError(
                 f"{name}: expected a sparse matrix of SciPy, (data, indices, indptr, shape) or an "
@@ -55,8 +55,8 @@ def csr_of(value: Any, name: str) -> Csr:
         indptr = np.searchsorted(rows, np.arange(dense.shape[0] + 1))
     csr = Csr(
         numbers_of(data, f"{name}.data"),
-        np.ascontiguousarray(indices, dtype=np.int32).reshape(-1),
-        np.ascontiguousarray(indptr, dtype=np.int64).reshape(-1),
+        integers_of(indices, f"{name}.indices"),
+        integers_of(indptr, f"{name}.indptr", np.int64),
         (int(shape[0]), int(shape[1])),
     )
     if len(csr.data) != len(csr.indices):
@@ -92,7 +92,7 @@ def _rows_of(rows: dict[str, Any], name: str, allowed: dict[str, bool]) -> dict[
         if allowed[key]:
             result[key] = numbers_of(value, f"{name}.{key}")
         else:
-            result[key] = np.ascontiguousarray(value, dtype=np.int32).reshape(-1)
+            result[key] = integers_of(value, f"{name}.{key}")
     return result
 
 
@@ -145,7 +145,7 @@ class ContactProblem:
             if getattr(self, name) is not None:
                 setattr(self, name, numbers_of(getattr(self, name), name))
         if self.block_start is not None:
-            self.block_start = np.ascontiguousarray(self.block_start, dtype=np.int32).reshape(-1)
+            self.block_start = integers_of(self.block_start, "block_start")
         for name, allowed in _ROWS.items():
             if getattr(self, name) is not None:
                 setattr(self, name, _rows_of(getattr(self, name), name, allowed))
@@ -236,9 +236,9 @@ class ContactSolver:
     ) -> None:
         self._solver = _core.ContactSolver(
             law=law, rule=rule, method=method, measure=measure, tolerance=float(tolerance),
-            max_sweeps=int(max_sweeps), recovery_speed=float(recovery_speed),
-            max_seconds=float(max_seconds), backend=backend, device=int(device),
-            threads=int(threads),
+            max_sweeps=integer_of(max_sweeps, "max_sweeps"), recovery_speed=float(recovery_speed),
+            max_seconds=float(max_seconds), backend=backend, device=integer_of(device, "device"),
+            threads=integer_of(threads, "threads"),
         )
 
     def solve(

@@ -34,19 +34,23 @@ def _datasets_of(source: Any, series: str | None) -> list[Any]:
     pydicom = package("pydicom", "read_dicom", "pydicom")
     if isinstance(source, (str, os.PathLike)):
         path = Path(source)
-        source = sorted(path.iterdir()) if path.is_dir() else [path]
+        source = sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
     elif isinstance(source, pydicom.Dataset):
         source = [source]
     datasets = []
     for item in source:
         if isinstance(item, pydicom.Dataset):
             datasets.append(item)
-        elif Path(item).is_file():
-            try:
-                datasets.append(pydicom.dcmread(item))
-            except pydicom.errors.InvalidDicomError as error:
-                raise ValueError(f"source: {item}: is no DICOM file; leave it out") from error
+            continue
+        try:
+            datasets.append(pydicom.dcmread(item))
+        except pydicom.errors.InvalidDicomError as error:
+            raise ValueError(f"source: {item}: is no DICOM file; leave it out") from error
+        except OSError as error:
+            raise ValueError(f"source: {item}: {error.strerror}") from error
     datasets = [d for d in datasets if "PixelData" in d]
+    for dataset in datasets:
+        _check(dataset)
     found = sorted({str(d.SeriesInstanceUID) for d in datasets})
     if series is not None:
         datasets = [d for d in datasets if d.SeriesInstanceUID == series]
@@ -57,6 +61,20 @@ def _datasets_of(source: Any, series: str | None) -> list[Any]:
         raise ValueError("source: expected DICOM files with pixels"
                          + (f" of series {series}, there are {', '.join(found)}" if found else ""))
     return datasets
+
+
+def _check(dataset: Any) -> None:
+    """Refuses a dataset that lacks what is needed, or whose samples are no values."""
+    needed = ["SeriesInstanceUID", "Rows", "Columns", "PixelSpacing"]
+    if str(dataset.get("Modality")) == "RTDOSE":
+        needed.append("DoseGridScaling")
+    for name in needed:
+        if dataset.get(name) in (None, ""):
+            raise ValueError(f"source: instance {dataset.get('InstanceNumber', '?')} has no {name}")
+    if "ModalityLUTSequence" in dataset or not str(
+            dataset.get("PhotometricInterpretation")).startswith("MONOCHROME"):
+        raise ValueError("source: colors, palettes and tables of values are not read; convert the "
+                         "images to NIfTI")
 
 
 def _axes_of(dataset: Any) -> np.ndarray:
@@ -90,8 +108,8 @@ def _grid_of(dataset: Any, count: int, step: float, origin: np.ndarray) -> Grid:
 
 def _rescaled(datasets: list[Any]) -> np.ndarray:
     """Samples with slope and intercept: integers where these are, else float32."""
-    slopes = [float(d.get("RescaleSlope", 1)) for d in datasets]
-    shifts = [float(d.get("RescaleIntercept", 0)) for d in datasets]
+    slopes = [float(d.get("RescaleSlope") or 1) for d in datasets]
+    shifts = [float(d.get("RescaleIntercept") or 0) for d in datasets]
     pixels = [d.pixel_array for d in datasets]
     if all(s == 1 for s in slopes) and all(s.is_integer() for s in shifts):
         wide = np.stack([p.astype(np.int64) + int(s) for p, s in zip(pixels, shifts)])
@@ -135,7 +153,13 @@ def _dose_of(dataset: Any) -> Volume:
     dose = pixels * float(dataset.DoseGridScaling)
     origin = np.array(dataset.ImagePositionPatient, float)
     offsets = np.atleast_1d(np.array(dataset.get("GridFrameOffsetVector", 0.0), float))
+    if len(offsets) != len(dose):
+        raise ValueError(f"source: expected a GridFrameOffsetVector of {len(dose)} frames, found "
+                         f"{len(offsets)}")
     if offsets[0] != 0:  # places along the axis of the patient, of axial frames
+        if abs(abs(axes[2, 2]) - 1) > 1e-4 or abs(offsets[0] - origin[2]) > 1e-3:
+            raise ValueError("source: GridFrameOffsetVector begins neither at 0 nor, of an axial "
+                             "dose, at the z of ImagePositionPatient")
         offsets = (offsets - origin[2]) * axes[2, 2]
     if len(offsets) > 1 and offsets[-1] < offsets[0]:
         offsets, dose = offsets[::-1], dose[::-1]
@@ -217,7 +241,8 @@ def to_rtdose(volume: Volume, like: Any, *, axes: str) -> Any:
     result.SeriesNumber = result.InstanceNumber = 1
     result.NumberOfFrames, result.Rows, result.Columns = dose.shape
     result.FrameIncrementPointer = pydicom.tag.Tag("GridFrameOffsetVector")
-    result.GridFrameOffsetVector = [grid.spacing[2] * k for k in range(len(dose))]
+    result.GridFrameOffsetVector = [
+        _decimal(pydicom, grid.spacing[2] * k) for k in range(len(dose))]
     result.ImagePositionPatient = [_decimal(pydicom, x) for x in grid.origin]
     result.ImageOrientationPatient = [
         _decimal(pydicom, x) for x in np.array(grid.direction)[:, :2].T.ravel()]

@@ -9,7 +9,7 @@ from typing import Any, Iterator, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, nodes_of, triangles_of
+from ._arrays import cells_of, integer_of, nodes_of, triangles_of
 from ._contact import ContactProblem
 from ._fields import Field
 from ._grid import Grid, grid_from_core
@@ -38,7 +38,7 @@ class MeshFile:
     """
 
     def __init__(self, path: Any, *, rest_step: int = 0, axes: str = "ras") -> None:
-        self._file = _core.MeshFile(os.fspath(path), int(rest_step), axes)
+        self._file = _core.MeshFile(os.fspath(path), integer_of(rest_step, "rest_step"), axes)
         points, tets, hexes = self._file.mesh()
         self.mesh = Mesh(points, joined_cells(tets, hexes))
         self.times: list[float] = list(self._file.times)
@@ -130,7 +130,8 @@ def read(
         return MeshFile(name)
     if kind == "contact problem":
         return ContactProblem(**_core.read_contact_problem(name))
-    samples, grid, read_name, nifti = _core.read_volume(name, array, int(step), axes, bool(labels))
+    samples, grid, read_name, nifti = _core.read_volume(
+        name, array, integer_of(step, "step"), axes, bool(labels))
     return Volume(samples, grid_from_core(grid), read_name, nifti)
 
 
@@ -188,7 +189,8 @@ def _write_volumes(
                 raise ValueError(f"value[{number}]: expected shape and type of value[0]")
         arrays = [_entry(first.name, [volume.array for volume in volumes], first.nifti)]
     _core.write_volumes(
-        path, first.grid._core(), arrays, [float(t) for t in times or ()], int(compress)
+        path, first.grid._core(), arrays, [float(t) for t in times or ()],
+        integer_of(compress, "compress")
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import numbers_of, vector_of
+from ._arrays import integer_of, numbers_of, vector_of
 
 _UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -42,7 +42,8 @@ class Grid:
     direction: tuple[tuple[float, float, float], ...] = field(default=_UNIT)
 
     def __post_init__(self) -> None:
-        shape = tuple(int(n) for n in np.reshape(self.shape, -1))
+        numbers = np.reshape(np.asarray(self.shape, object), -1)
+        shape = tuple(integer_of(n, "shape") for n in numbers)
         if len(shape) != 3:
             raise ValueError(f"shape: expected three numbers z, y, x, got {self.shape}")
         if not all(1 <= n <= 2**30 for n in shape):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, nodes_of, vector_of
+from ._arrays import cells_of, integer_of, nodes_of, vector_of
 from ._volume import volume_of
 
 Cells = Any  # (m, 4), (m, 8), or a pair of both
@@ -88,7 +88,7 @@ def lattice_mesh(
     """
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
     made = _core.lattice_mesh(
-        source.array, source.grid._core(), int(cells),
+        source.array, source.grid._core(), integer_of(cells, "cells"),
         None if threshold is None else float(threshold), bool(hexahedra),
     )
     return Mesh(*made)
@@ -134,7 +134,7 @@ def deform(
     if not 0 <= seed < 2**64:
         raise ValueError(f"seed: expected a number from 0 to 2^64 - 1, got {seed}")
     return np.asarray(_core.deform(
-        nodes, tets, hexes, kind, float(amount), _AXES[axis], int(seed),
+        nodes, tets, hexes, kind, float(amount), _AXES[axis], integer_of(seed, "seed"),
         vector_of(offset, "offset"), float(time),
     ))
 

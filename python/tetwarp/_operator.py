@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import array_of, cells_of, describe, maker_of, nodes_of, out_of
+from ._arrays import array_of, cells_of, describe, integer_of, maker_of, nodes_of, out_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 
@@ -87,7 +87,7 @@ class WarpOperator:
             self._source._core(), points, *cells_of(cells, "cells", len(points)),
             nodes_of(deformed, "deformed", len(points)), interpolator=interpolator,
             outside=outside, output_grid=self._output._core(), mask=self._mask_of(mask),
-            threads=int(threads),
+            threads=integer_of(threads, "threads"),
         )
 
     def _mask_of(self, mask: Any) -> np.ndarray:

@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterator, Union
 import numpy as np
 
 from . import _core
-from ._arrays import vector_of
+from ._arrays import integer_of, vector_of
 from ._grid import grid_from_core
 from ._mesh import Mesh, Surface
 from ._volume import Volume
@@ -146,8 +146,8 @@ class Simulator:
                 f"scene: expected a dict or the path of a file, got {type(scene).__name__}"
             )
         self._simulator = _core.Simulator(
-            file, text, os.fspath(folder), backend=backend, device=int(device),
-            threads=int(threads), untangle=bool(untangle),
+            file, text, os.fspath(folder), backend=backend, device=integer_of(device, "device"),
+            threads=integer_of(threads, "threads"), untangle=bool(untangle),
             max_step_seconds=float(max_step_seconds),
         )
         self.names: list[str] = list(self._simulator.names)
@@ -328,6 +328,7 @@ class Simulator:
             if body not in self.names:
                 raise ValueError(f"body: {body!r} is not one of {', '.join(self.names)}")
             return self.names.index(body)
-        if not 0 <= body < len(self.names):
+        index = integer_of(body, "body")
+        if not 0 <= index < len(self.names):
             raise ValueError(f"body: expected 0 to {len(self.names) - 1}, got {body}")
-        return int(body)
+        return index

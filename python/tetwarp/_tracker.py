@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import number_of, numbers_of, points_of
+from ._arrays import array_of, integer_of, number_of, numbers_of, points_of
 from ._contact import ContactProblem, ContactSolution
 
 _MATERIAL = (
@@ -30,7 +30,7 @@ _CONTACTS: dict[str, tuple[int, Any, bool]] = {
 def _column_of(value: Any, name: str, count: int, width: int, dtype: Any) -> np.ndarray:
     """A column of a table: `count` rows of `width` numbers."""
     shape = (count,) if width == 1 else (count, width)
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.size == 0 and count == 0:
         return np.empty(shape, dtype)
     if array.shape != shape or array.dtype.kind not in ("iu" if dtype is np.int32 else "iuf"):
@@ -221,8 +221,8 @@ class ContactTracker:
             )
         }
         self._tracker = _core.ContactTracker(
-            given, numbers, integrator, int(threads), 0 if records is None else len(records),
-            {} if records is None else records.table,
+            given, numbers, integrator, integer_of(threads, "threads"),
+            0 if records is None else len(records), {} if records is None else records.table,
         )
         self._count: int | None = None
 
@@ -251,7 +251,7 @@ class ContactTracker:
         for name in contacts:
             if name not in _CONTACTS:
                 raise ValueError(f"contacts: {name!r} is not one of {', '.join(_CONTACTS)}")
-        count = len(contacts.get("keys", ()))
+        count = len(array_of(contacts.get("keys", ()), "contacts['keys']"))
         table = {}
         for name, (width, dtype, is_required) in _CONTACTS.items():
             if name in contacts:
@@ -272,10 +272,17 @@ class ContactTracker:
 
         Raises
         ------
+        ValueError
+            the problem has another number of contacts than the step.
         RuntimeError
             no step has begun.
         """
-        return replace(problem, **self._tracker.fill())
+        filled = self._tracker.fill()
+        rows = 3 * (self._count or 0)
+        if problem.jacobian is not None and problem.jacobian.shape[0] != rows:
+            raise ValueError(f"problem: expected a jacobian of {rows} rows, 3 per contact of the "
+                             f"step, got {problem.jacobian.shape[0]}")
+        return replace(problem, **filled)
 
     def end_step(
         self, solution: ContactSolution | np.ndarray, bodies: Sequence[Any], *, velocity: Any = None
@@ -296,6 +303,8 @@ class ContactTracker:
             no step has begun.
         """
         if isinstance(solution, ContactSolution):
+            if velocity is not None:
+                raise ValueError("velocity: the solution has its own; leave it out")
             impulse, velocity = solution.impulse, solution.velocity
         else:
             impulse = solution

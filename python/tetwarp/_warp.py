@@ -9,7 +9,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, describe, maker_of, nodes_of, number_of, out_of
+from ._arrays import cells_of, describe, integer_of, maker_of, nodes_of, number_of, out_of
 from ._grid import Grid, grid_from_core, reference_grid
 from ._mesh import Cells
 from ._volume import Volume, volume_of
@@ -193,9 +193,11 @@ class Warper:
             *cells_of(cells, "cells", len(points)),
             interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
             intensity=intensity, quantities=_quantities_of(quantity, len(sources)),
-            outside=outside, falloff=number_of(falloff, "falloff"), default_value=number_of(default_value, "default_value"),
+            outside=outside, falloff=number_of(falloff, "falloff"),
+            default_value=number_of(default_value, "default_value"),
             output_grid=None if reference is None else reference_grid(reference)._core(),
-            backend=backend, device=int(device), threads=int(threads),
+            backend=backend, device=integer_of(device, "device"),
+            threads=integer_of(threads, "threads"),
         )
         self._grid = grid_from_core(self._warper.output_grid)
         self._is_source_grid = self._grid == sources[0].grid
