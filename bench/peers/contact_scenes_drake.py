@@ -3,6 +3,7 @@
 Cubes are compliant, the plane is rigid. It has no cloth.
 """
 
+import importlib.metadata
 import time
 
 import pydrake.all as drake
@@ -64,7 +65,7 @@ def run(scene, solver, masses, speed):
 
 
 for solver in (drake.DiscreteContactApproximation.kSap, drake.DiscreteContactApproximation.kTamsi):
-    peer = f"Drake, {solver.name[1:].upper()}"
+    peer = f"Drake {importlib.metadata.version('drake')}, {solver.name[1:].upper()}"
     cubes, milliseconds = run("thrown", solver, [1.0], c.SPEED)
     c.report_thrown(peer, [own for own, in cubes], milliseconds)
     c.report_stack(peer, *run("stack", solver, c.MASSES, 0.0))

@@ -2,6 +2,7 @@
 through the fixed sphere with all settings that were tried.
 """
 
+import importlib.metadata
 import time
 
 import numpy
@@ -46,7 +47,7 @@ PLANE = ((pybullet.GEOM_PLANE,), {})
 CUBE = ((pybullet.GEOM_BOX,), {"halfExtents": [c.SIDE / 2] * 3})
 
 pybullet.connect(pybullet.DIRECT)
-peer = "PyBullet"
+peer = f"PyBullet {importlib.metadata.version('pybullet')}"
 start()
 add(PLANE, 0, [0, 0, 0])
 cube = add(CUBE, 1, [0, 0, c.SIDE / 2])

@@ -24,13 +24,18 @@ def cube(name, density, height, **more):
             "density": density, "pose": {"position": [0, 0, height]}, **more}
 
 
+def seconds_of_children():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
 def simulate(command, document, path):
     """Seconds of the processor."""
     (path / "scene.json").write_text(json.dumps(document))
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    before = seconds_of_children()
     subprocess.run([command, "simulate", path / "scene.json", "-o", path / "out",
                     "--threads", "1"], check=True, stdout=subprocess.DEVNULL)
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    return seconds_of_children() - before
 
 
 def run(command, scene, bodies, obstacle):

@@ -26,10 +26,10 @@ double nanoseconds_of(Filter filter) {
 
 double estimated_cpu_seconds(const WarpOptions& options, double samples, bool has_hexahedra) {
   double nanoseconds = nanoseconds_of(options.filter);
-  // The same file, rows feature/, over the plain step.
+  // docs/benchmarks.md, what features cost, over the plain step.
   if (options.antialias) nanoseconds *= 8;
   if (options.intensity == Intensity::density) nanoseconds *= 4;
-  if (options.intensity == Intensity::conservative) nanoseconds = 1700;
+  if (options.intensity == Intensity::conservative) nanoseconds = 2100;
   if (has_hexahedra) nanoseconds += 220;
   return 1e-9 * nanoseconds * samples / thread_count(options.threads);
 }

@@ -139,6 +139,13 @@ class StandInNode:
 
     def __init__(self, image=None, affine=None, mesh=None):
         self.image, self.affine, self.mesh = image, affine, mesh
+        self.is_shown = False
+
+    def GetDisplayNode(self):
+        return self if self.is_shown else None
+
+    def CreateDefaultDisplayNodes(self):
+        self.is_shown = True
 
     def GetImageData(self):
         return self.image
@@ -193,7 +200,7 @@ def test_the_logic_of_the_slicer_module_fills_its_nodes(slicer, scan):
 
     expected = tetwarp.warp(volume, *mesh, bent, outside="nearest")
     assert np.array_equal(result.volume, expected.volume)
-    assert np.allclose(output.affine, volume.affine)
+    assert np.allclose(output.affine, volume.affine) and output.is_shown
     assert output.GetImageData().GetDimensions() == tuple(reversed(volume.shape))
     assert transform.transform.GetDisplacementGrid().GetNumberOfPoints() == volume.array.size
     assert field.values.shape == (*volume.shape, 3)

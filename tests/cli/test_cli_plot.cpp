@@ -62,10 +62,10 @@ TEST(Plot, DrawsRunsBesideEachOtherOnTheSameAxes) {
   ASSERT_EQ(paths.size(), 2u);
   ASSERT_EQ(paths[0].size(), 13u);
   ASSERT_EQ(paths[1].size(), 7u);
-  // 400 x 150 pixels for 12 steps and the range of both runs, to a tenth of a pixel.
+  // 400 x 142 pixels for 12 steps and the range of both runs, to a tenth of a pixel.
   const std::vector<double> energy = h5_numbers(scene.in("long", "series.h5"), "energy/total");
   const auto [least, most] = std::minmax_element(energy.begin(), energy.end());
-  EXPECT_NEAR(lowest(paths[0]) - highest(paths[0]), 150, 0.11);
+  EXPECT_NEAR(lowest(paths[0]) - highest(paths[0]), 142, 0.11);
   for (std::size_t n = 0; n < energy.size(); ++n) {
     const double down = 150 * (*most - energy[n]) / (*most - *least);
     EXPECT_NEAR(paths[0][n][0] - paths[0][0][0], 400.0 / 12 * static_cast<double>(n), 0.11) << n;
@@ -102,7 +102,7 @@ TEST(Plot, DrawsEveryDatasetOfAGroupAndLengthsOfVectors) {
   const Path drawn = paths_in(svg).back();
   ASSERT_EQ(drawn.size(), lengths.size());
   for (std::size_t n = 0; n < lengths.size(); ++n) {
-    EXPECT_NEAR(drawn[n][1] - highest(drawn), 150 * (*most - lengths[n]) / (*most - *least), 0.11);
+    EXPECT_NEAR(drawn[n][1] - highest(drawn), 142 * (*most - lengths[n]) / (*most - *least), 0.11);
   }
 }
 

@@ -56,6 +56,8 @@ class TetWarpLogic(ScriptedLoadableModuleLogic):
                                      interpolator=interpolator, **options)
             output.SetIJKToRASMatrix(matrix)
             output.SetAndObserveImageData(image)
+            if output.GetDisplayNode() is None:  # without one, nothing is drawn
+                output.CreateDefaultDisplayNodes()
         if transform is not None:
             grid_transform = slicer.vtkOrientedGridTransform()
             field = fill.fill_grid_transform(

@@ -13,6 +13,7 @@
 namespace tetwarp::cli {
 namespace {
 constexpr int plot_width = 400, plot_height = 150;  // [pixel], as all lengths below
+constexpr int margin = 4;  // between the extremes of curves and the frame
 constexpr int left = 84, top = 34, gap = 26, legend_width = 130, foot = 44;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// Colors that people who cannot tell red from green can distinguish (Okabe and Ito 2008).
@@ -152,7 +153,8 @@ class Drawing {
                  bool has_y,
                  bool has_x) {
     const auto pixel_of_y = [&](double y) {
-      return corner[1] + plot_height * ((range.high - y) / (range.high - range.low));
+      const double share = (range.high - y) / (range.high - range.low);
+      return corner[1] + margin + (plot_height - 2 * margin) * share;
     };
     for (const double tick : chart_ticks(range.low, range.high)) {
       const double y = pixel_of_y(tick);
@@ -173,15 +175,15 @@ class Drawing {
                         " text-anchor=\"middle\"");
       }
     }
+    out_ += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\" fill=\"none\" "
+        "stroke=\"#444\"/>\n",
+        corner[0], corner[1], plot_width, plot_height);
     for (std::size_t k = 0; k < curves.size(); ++k) {
       const auto points =
           chart_points(curves[k].values, column.first, column.step, x_.low, x_.high, plot_width);
       draw_line(points, k, corner[0], pixel_of_y);
     }
-    out_ += fmt::format(
-        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\" fill=\"none\" "
-        "stroke=\"#444\"/>\n",
-        corner[0], corner[1], plot_width, plot_height);
   }
 
   /// One path, which begins anew behind values that are not finite.
