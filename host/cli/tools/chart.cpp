@@ -13,7 +13,7 @@
 namespace tetwarp::cli {
 namespace {
 constexpr int plot_width = 400, plot_height = 150;  // [pixel], as all lengths below
-constexpr int margin = 4;  // between the extremes of curves and the frame
+constexpr int margin = 4;                           // between the extremes of curves and the frame
 constexpr int left = 84, top = 34, gap = 26, legend_width = 130, foot = 44;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// Colors that people who cannot tell red from green can distinguish (Okabe and Ito 2008).
