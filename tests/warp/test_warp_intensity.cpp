@@ -112,6 +112,60 @@ TEST(WarpIntensity, KeepsTheTotalOfShrunkAndConstantSources) {
   }
 }
 
+/// A corner of a box with edges of six voxels, and another one from the far end of the source.
+scenes::Scene far_corners(std::int64_t size) {
+  scenes::Scene scene;
+  scene.source_grid = scenes::unit_grid(size, size, size);
+  scene.output_grid = scenes::unit_grid(size, 16, 16);
+  const double end = static_cast<double>(size) - 2.3;
+  scene.mesh.rest_positions = {{2.3, 2.1, 2.2},     {8.3, 2.1, 2.2},    {2.3, 8.1, 2.2},
+                               {2.3, 2.1, 8.2},     {end, end, end},    {end, end - 6, end},
+                               {end - 6, end, end}, {end, end, end - 6}};
+  scene.mesh.tets = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  scene.deformed = scene.mesh.rest_positions;
+  return scene;
+}
+
+/// Of the source between the two bodies of a voxel nothing is looked at.
+TEST(WarpIntensity, BodiesThatWereFarApartMayOverlap) {
+  scenes::Scene scene = far_corners(60);
+  for (std::size_t n = 4; n < 8; ++n) {
+    for (int axis = 0; axis < 3; ++axis) scene.deformed[n][axis] -= 48.6;
+  }
+  const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float64);
+  const Step expected = run(source, scene, Backend::reference, Intensity::conservative);
+  const Step step = run(source, scene, Backend::cpu, Intensity::conservative);
+  EXPECT_LE(largest_difference(step.volume, expected.volume), 1e-12);
+  EXPECT_NEAR(step.report.totals.after[0] / step.report.totals.before[0], 1, 1e-12);
+}
+
+/// What a part of a mesh gives does not depend on how much the others are compressed, as parts of
+/// an output have the meshes that they need.
+TEST(WarpIntensity, CompressionElsewhereChangesNoBit) {
+  scenes::Scene scene = far_corners(60);
+  for (std::size_t n = 0; n < 8; ++n) {
+    const double scale = n < 4 ? 0.9 : 0.05;
+    const Point3 corner = scene.mesh.rest_positions[n < 4 ? 0 : 4];
+    const Point3 to = n < 4 ? Point3{2.3, 2.1, 2.2} : Point3{52.4, 7.3, 6.2};
+    for (int axis = 0; axis < 3; ++axis) {
+      scene.deformed[n][axis] = to[axis] + scale * (scene.deformed[n][axis] - corner[axis]);
+    }
+  }
+  const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float64);
+  const Step both = run(source, scene, Backend::cpu, Intensity::conservative);
+  scene.mesh.tets.pop_back();
+  const Step one = run(source, scene, Backend::cpu, Intensity::conservative);
+  const auto of_both = both.volume.samples<double>(), of_one = one.volume.samples<double>();
+  std::int64_t differing = 0, filled = 0;
+  for (std::size_t n = 0; n < of_one.size(); ++n) {
+    const bool is_first = n % 60 < 16;
+    differing += is_first ? of_both[n] != of_one[n] : 0;
+    filled += is_first ? of_one[n] != 0 : of_both[n] != 0;
+  }
+  EXPECT_EQ(differing, 0);
+  EXPECT_GT(filled, 20);
+}
+
 /// Three sources of nine components: 27 totals, each that of the source alone.
 TEST(WarpIntensity, ReportsTheTotalsOfAllSources) {
   const scenes::Scene scene = whole_scenes()[1];

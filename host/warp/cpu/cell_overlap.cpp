@@ -52,6 +52,10 @@ struct Sides {
 void CellOverlap::run(std::int64_t cell) {
   if (op_.cell_work.size > 0 && op_.cell_work[cell] == keep_cell) return;
   op_.frame.set_corner(cell, corner_);
+  if (is_compressed(cell)) {
+    for (int voxel = 0; voxel < voxel_count; ++voxel) integrate_alone(voxel);
+    return;
+  }
   memory_.parts.clear();
   memory_.facets.clear();
   constexpr int none = std::numeric_limits<int>::max();
@@ -62,6 +66,42 @@ void CellOverlap::run(std::int64_t cell) {
     if (mesh_.sides[t] != 0) add_tet(t);
   }
   store();
+}
+
+/// Whether the tetrahedra of a cell take many voxels of the source into one of the output.
+bool CellOverlap::is_compressed(std::int64_t cell) const {
+  constexpr double most = 64;  // voxels of the source, on average
+  double source = 0, output = 0;
+  const std::int64_t end = end_of_cell(op_.list, cell);
+  for (std::int64_t p = op_.list.ranges[cell].begin; p < end; ++p) {
+    const int t = tet_of(op_.list.pairs[p]);
+    if (mesh_.sides[t] == 0) continue;
+    const double volume = std::abs(mesh_.volumes[t]);
+    source += volume;
+    output += volume * (mesh_.voxel_ratio / op_.transforms[t].scale);
+  }
+  return source > most * output;
+}
+
+bool CellOverlap::is_in_frame(const int* x) const {
+  bool is_in = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    is_in = is_in && x[axis] >= op_.frame.begin[axis] && x[axis] < op_.frame.end[axis];
+  }
+  return is_in;
+}
+
+/// @param x  out: where a voxel of the cell is in the frame
+void CellOverlap::place_of(int voxel, int* x) const {
+  x[0] = corner_[0] + voxel % cell_edge;
+  x[1] = corner_[1] + voxel / cell_edge % cell_edge;
+  x[2] = corner_[2] + voxel / (cell_edge * cell_edge);
+}
+
+void CellOverlap::integrate_alone(int voxel) const {
+  int x[3];
+  place_of(voxel, x);
+  if (is_in_frame(x)) op_(op_.frame.offset_of(x[0], x[1], x[2]) - op_.first);
 }
 
 void CellOverlap::add_tet(int t) {
@@ -272,14 +312,19 @@ void CellOverlap::add_facet(const Tet& tet, const Polygon<6>& square, int inner,
 
 void CellOverlap::store() {
   memory_.facets.push_back({-1, -1, memory_.parts.size()});
-  constexpr std::int64_t most = std::int64_t{1} << 18;  // sums at a time, but those of one voxel
+  constexpr std::int64_t most = std::int64_t{1} << 18;  // sums at a time
   for (int begin = 0; begin < voxel_count;) {
+    if (memory_.reach[begin].sum_count() > most) {
+      integrate_alone(begin++);
+      continue;
+    }
     int end = begin;
-    std::int64_t size = 0, next = 0;
-    for (; end < voxel_count; ++end, size += next) {
-      next = memory_.reach[end].sum_count();
-      if (end > begin && size + next > most) break;
+    std::int64_t size = 0;
+    for (; end < voxel_count; ++end) {
+      const std::int64_t next = memory_.reach[end].sum_count();
+      if (size + next > most) break;
       memory_.start[end] = size;
+      size += next;
     }
     memory_.sums.assign(static_cast<std::size_t>(size), 0.0);
     add_parts(begin, end);
@@ -320,11 +365,9 @@ void CellOverlap::add_parts(int begin, int end) {
 /// Stores the integral of the source over the bodies of a voxel.
 template <class T>
 void CellOverlap::store(int voxel, const T* samples) const {
-  const int x[3] = {corner_[0] + voxel % cell_edge, corner_[1] + voxel / cell_edge % cell_edge,
-                    corner_[2] + voxel / (cell_edge * cell_edge)};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (x[axis] < op_.frame.begin[axis] || x[axis] >= op_.frame.end[axis]) return;
-  }
+  int x[3];
+  place_of(voxel, x);
+  if (!is_in_frame(x)) return;
   double values[max_transform_components] = {};
   const Reach& reach = memory_.reach[voxel];
   if (!reach.is_empty()) {

@@ -15,6 +15,7 @@ namespace tetwarp {
 struct OverlapMesh {
   View<const Node> nodes;              ///< deformed, in the frame [quantum]
   View<const Node> rest;               ///< in the source's index space [quantum]
+  View<const double> volumes;          ///< six times those at rest, signed
   View<const std::int8_t> sides;       ///< sign of the volume at rest; 0: it has no contents
   View<const std::int32_t> neighbors;  ///< from face_neighbors()
   double voxel_ratio;                  ///< volume of a voxel of the source over one of the output
@@ -61,6 +62,9 @@ struct CellOverlapMemory {
 /// to one voxel it takes from the other. Faces in which two tetrahedra meet cancel. On which side
 /// of a plane a node lies is decided in integers, and corners are interpolated between the two ends
 /// of an edge, so that facets of neighbors fit without gaps also where planes nearly coincide.
+///
+/// VoxelOverlapOp takes cells where many voxels of the source go into one of the output, so that
+/// facets have many parts, and voxels whose bodies are far from each other in the source.
 class CellOverlap {
  public:
   /// The arguments must outlive the object.
@@ -84,6 +88,10 @@ class CellOverlap {
   using Reach = CellOverlapMemory::Reach;
   static constexpr int voxel_count = CellOverlapMemory::voxel_count;
 
+  bool is_compressed(std::int64_t cell) const;
+  bool is_in_frame(const int* x) const;
+  void place_of(int voxel, int* x) const;
+  void integrate_alone(int voxel) const;
   void add_tet(int t);
   void set_tet(int t, Tet& tet) const;
   bool is_flat(int t, int* voxel) const;

@@ -20,7 +20,7 @@ struct Polygon {
   };
   /// Each cut adds one corner: to a triangle two per axis of two spaces, to a square fewer. Where
   /// corners lie in a plane to within rounding, it may add more, for which there is some room.
-  static constexpr int capacity = 20;
+  static constexpr int capacity = 24;
 
   int count = 0;
   Corner corner[capacity];

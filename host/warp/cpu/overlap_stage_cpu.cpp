@@ -3,7 +3,6 @@
 #include "host/warp/cpu/overlap_stage_cpu.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "host/base/parallel.hpp"
 #include "host/warp/cpu/face_neighbors.hpp"
@@ -17,10 +16,10 @@ void OverlapStage<CpuExec>::run(CpuExec& exec,
                                 double voxel_ratio,
                                 const ProgressPart& progress) {
   if (neighbors_.empty()) set_up(op.tets, rest);
-  constexpr double most = 64;  // voxels of the source in one of the output, on average
-  if (compression(op, voxel_ratio) > most) return run_voxels(exec, op, progress);
+  set_sides(op);
   const OverlapMesh mesh = {nodes,
                             rest,
+                            {rest_volumes_.data(), std::ssize(rest_volumes_)},
                             {sides_.data(), std::ssize(sides_)},
                             {neighbors_.data(), std::ssize(neighbors_)},
                             voxel_ratio};
@@ -50,31 +49,13 @@ void OverlapStage<CpuExec>::set_up(View<const std::int32_t> tets, View<const Nod
   neighbors_ = face_neighbors(tets, rest_volumes_);
 }
 
-/// Sets the sides. @returns volume of the source per volume of the output [voxel], on average
-double OverlapStage<CpuExec>::compression(const VoxelOverlapOp& op, double voxel_ratio) {
-  double source = 0, output = 0;
+void OverlapStage<CpuExec>::set_sides(const VoxelOverlapOp& op) {
   for (std::size_t t = 0; t < sides_.size(); ++t) {
     const auto index = static_cast<std::int64_t>(t);
     const TetClass tet_class = op.setups[index].tet_class;
-    const double scale = op.transforms[index].scale;
     const bool has_shape = tet_class == TetClass::regular || tet_class == TetClass::inverted;
-    const double volume = has_shape && scale > 0 ? rest_volumes_[t] : 0;
+    const double volume = has_shape && op.transforms[index].scale > 0 ? rest_volumes_[t] : 0;
     sides_[t] = static_cast<std::int8_t>((volume > 0) - (volume < 0));
-    source += std::abs(volume);
-    if (volume != 0) output += std::abs(volume) * (voxel_ratio / scale);
-  }
-  return output > 0 ? source / output : 0;
-}
-
-void OverlapStage<CpuExec>::run_voxels(CpuExec& exec,
-                                       VoxelOverlapOp op,
-                                       const ProgressPart& progress) {
-  constexpr std::int64_t batch = std::int64_t{1} << 14;
-  const std::int64_t voxels = op.frame.voxel_count();
-  for (; op.first < voxels; op.first += batch) {
-    voxel_overlap(exec, op, std::min(batch, voxels - op.first));
-    progress.report(static_cast<double>(std::min(op.first + batch, voxels)) /
-                    static_cast<double>(voxels));
   }
 }
 

@@ -12,9 +12,6 @@ namespace tetwarp {
 
 /// Values as those of voxel_overlap(), to within 2^-44 of the largest sample around: the integrals
 /// are the same, over facets that neighbors share. The same bits for any number of threads.
-///
-/// Where many voxels of the source go into one of the output, so that facets have many parts,
-/// voxel_overlap() is taken.
 template <>
 class OverlapStage<CpuExec> {
  public:
@@ -27,8 +24,7 @@ class OverlapStage<CpuExec> {
 
  private:
   void set_up(View<const std::int32_t> tets, View<const Node> rest);
-  double compression(const VoxelOverlapOp& op, double voxel_ratio);
-  static void run_voxels(CpuExec& exec, VoxelOverlapOp op, const ProgressPart& progress);
+  void set_sides(const VoxelOverlapOp& op);
 
   std::vector<std::int32_t> neighbors_;    ///< from face_neighbors()
   std::vector<double> rest_volumes_;       ///< six times those of the tetrahedra, signed
