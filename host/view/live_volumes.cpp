@@ -30,6 +30,7 @@ Volume scaled(const Volume& volume, VolumeBody& range) {
       low = std::min(low, value);
       high = std::max(high, value);
     }
+    if (low > high) low = high = 0;  // no value is finite
     if (!(high > low)) high = low + 1;
     for (std::size_t v = 0; v < to.size(); ++v) {
       const double share = (static_cast<double>(from[v * step]) - low) / (high - low);

@@ -149,6 +149,13 @@ def check_room(command, environment, folder):
     subprocess.run([command, "view", "--make-keys", "room"], cwd=folder, timeout=SECONDS, check=True)
     if (folder / "room.key").stat().st_mode & 0o77:
         fail("keys: others may read them")
+    made = (folder / "room.key").read_bytes()
+    again = subprocess.run([command, "view", "--make-keys", "room"], cwd=folder, timeout=SECONDS,
+                           capture_output=True, text=True)
+    if again.returncode == 0 or "room.key" not in again.stderr:
+        fail(f"keys again: status {again.returncode}, {again.stderr!r}")
+    if (folder / "room.key").read_bytes() != made:
+        fail("keys: overwritten")
     address = f"tcp://127.0.0.1:{free_port()}"
     camera = ",".join(str(x) for x in CAMERA_EYE + CAMERA_TARGET)
     master = start(command, ["scene.json", "--screens", "room.json", "--address", address, "--key",
@@ -182,6 +189,9 @@ def check_refusals(command, environment, folder):
             (["scene.json", "--join", "tcp://127.0.0.1:1", "--screen", "a"], "SCENE"),
             (["--join", "tcp://127.0.0.1:1"], "--screen"),
             (["--join", "nowhere", "--screen", "a"], "address 'nowhere'"),
+            (["--join", "tcp://127.0.0.1:1", "--screen", "a", "--screens", "wall"], "--screens"),
+            (["--make-keys", "new", "--join", "tcp://127.0.0.1:1", "--screen", "a"], "--make-keys"),
+            (["--make-keys", "new", "--screens", "wall"], "--make-keys"),
             ([], "SCENE")):
         done = subprocess.run([command, "view", *words], env=environment, cwd=folder,
                               timeout=SECONDS, capture_output=True, text=True)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -164,6 +165,12 @@ TEST(RoomFile, NamesWhatIsWrong) {
   refuses(head + R"({"name": "a", "lower_left": [-1, -1, -1], "lower_right": [1, -1, -1],
                      "upper_right": [2, 1, -1]}]})",
           "right angle");
+  for (const std::string window : {"[65536, 0, 1, 1]", "[0, 0, 16385, 1]", "[0, 0, 1, -1]"}) {
+    refuses(head + R"({"name": "a", "window": )" + window + ", " + corners + "}]}", "window");
+  }
+  refuses(head + R"({"name": "a", "lower_left": [-1e9, -1, -1], "lower_right": [1, -1, -1],
+                     "upper_right": [1, 1, -1]}]})",
+          "screen a: a corner");
 }
 
 TEST(ScreenKeys, AreReadAsTheyWereWrittenByWhoMayHaveThem) {
@@ -181,6 +188,14 @@ TEST(ScreenKeys, AreReadAsTheyWereWrittenByWhoMayHaveThem) {
   EXPECT_THROW(read_screen_keys(master, false), IoError);
   std::ofstream(master) << "something else\n";
   EXPECT_THROW(read_screen_keys(master, true), IoError);
+  ScreenKeys wrong = keys;
+  for (const std::string& bad : {std::string(40, '~'), std::string(40, '#'), key('a') + "a"}) {
+    wrong.master_public = bad;  // no letter of Z85, too large a number, too long
+    std::ofstream(master) << master_text(wrong);
+    EXPECT_THROW(read_screen_keys(master, true), IoError) << bad;
+  }
+  EXPECT_THROW(check_no_file(master), IoError);
+  EXPECT_NO_THROW(check_no_file(folder / "other.key"));
   EXPECT_TRUE(is_loopback("tcp://127.0.0.1:5611"));
   EXPECT_FALSE(is_loopback("tcp://*:5611"));
   EXPECT_FALSE(is_loopback("tcp://eth0:5611"));
@@ -223,14 +238,31 @@ TEST(SwapGroup, GoesOnWithoutLostAndReplacedScreens) {
   group.join("b", "right", 0);
   group.begin_frame(1, 0);
   group.ready("a", 1, 1);
-  EXPECT_EQ(group.drop_silent(2.5), (Members{"right"}));
+  group.hear("a", 29);
+  EXPECT_EQ(group.drop_silent(30.5), (Members{"right"}));
   EXPECT_TRUE(group.may_swap(0)) << "nobody else draws";
-  EXPECT_FALSE(group.hear("b", 2.5));
-  EXPECT_EQ(group.join("c", "left", 2.6), "a");
+  EXPECT_FALSE(group.hear("b", 30.5));
+  EXPECT_EQ(group.join("c", "left", 30.6), "a");
   EXPECT_EQ(group.members(), (Members{"c"}));
-  EXPECT_EQ(group.join("c", "left", 2.7), "") << "the same process again";
+  EXPECT_EQ(group.join("c", "left", 30.7), "") << "the same process again";
   group.leave("c");
   EXPECT_EQ(group.size(), 0u);
+}
+
+TEST(SwapGroup, WaitsForAScreenThatIsSilentWhileItDraws) {
+  SwapGroup group(0.1, 2);
+  group.join("a", "left", 0);
+  group.join("b", "right", 0);
+  group.begin_frame(1, 0);
+  group.ready("a", 1, 0.05);
+  EXPECT_EQ(group.swap(), (Members{"a"}));
+  EXPECT_EQ(group.late_frames(), (std::map<std::string, std::uint64_t>{{"b", 1}}));
+  EXPECT_EQ(group.drop_silent(2.1), (Members{"left"})) << "it has drawn and says nothing";
+  EXPECT_TRUE(group.drop_silent(29.9).empty());
+  EXPECT_TRUE(group.ready("b", 1, 29.9)) << "it shows its frame";
+  EXPECT_TRUE(group.late_frames().empty());
+  EXPECT_TRUE(group.drop_silent(31.8).empty());
+  EXPECT_EQ(group.drop_silent(32), (Members{"right"})) << "it draws no more";
 }
 
 /// Whatever happens: a frame goes to no busy screen, and a screen shows only what it has drawn.

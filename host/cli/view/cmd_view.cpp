@@ -170,6 +170,12 @@ void check_view(const view::ViewOptions& options) {
   if (options.ball && !((*options.ball)[3] > 0)) {
     throw CLI::ValidationError("--ball", "the radius, its last number, is above 0");
   }
+  if (!options.make_keys.empty() && !(options.join.empty() && options.screens.empty())) {
+    throw CLI::ValidationError("--make-keys", "only writes keys; leave out --join and --screens");
+  }
+  if (!options.join.empty() && !options.screens.empty()) {
+    throw CLI::ValidationError("--screens", "is that of the master; leave it out with --join");
+  }
   const bool shows_scene = !options.scene().empty();
   if (shows_scene == (!options.join.empty() || !options.make_keys.empty())) {
     throw CLI::ValidationError(

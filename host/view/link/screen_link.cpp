@@ -34,6 +34,12 @@ ScreenLink::ScreenLink(const std::string& address, const ScreenKeys& keys)
   }
 }
 
+bool ScreenLink::wait_for_master(double seconds) {
+  const auto wait = std::chrono::duration<double>(seconds);
+  zmq::pollitem_t item{socket_.handle(), 0, ZMQ_POLLOUT, 0};
+  return zmq::poll(&item, 1, std::chrono::ceil<std::chrono::milliseconds>(wait)) > 0;
+}
+
 std::optional<ToScreen> ScreenLink::receive(double seconds) {
   try {
     return wait_for_message(seconds);

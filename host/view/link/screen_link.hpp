@@ -19,6 +19,9 @@ class ScreenLink {
   /// @throws std::runtime_error  the address is none
   ScreenLink(const std::string& address, const ScreenKeys& keys);
 
+  /// Waits for the connection, for what must not be lost.
+  /// @returns whether there is one before `seconds` are over
+  bool wait_for_master(double seconds);
   /// The next message of the master; malformed ones are counted and left out. In between it says
   /// that this process is alive.
   /// @param seconds  how long to wait at most; a signal ends it

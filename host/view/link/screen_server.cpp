@@ -68,6 +68,7 @@ void ScreenServer::listen() {
         "give --key NAME.key");
   }
   set_up_socket(socket_);
+  socket_.set(zmq::sockopt::router_mandatory, 1);  // says that a peer is gone
   socket_.set(zmq::sockopt::maxmsgsize, most_bytes);
   if (keys_.are_given()) {
     gate_.bind("inproc://zeromq.zap.01");
@@ -129,9 +130,10 @@ void ScreenServer::run() {
     receive_all();
     swap();
     send_frame();
-    const std::size_t lost = ending ? 0 : group_.drop_silent(clock_.seconds()).size();
+    find_gone();
+    if (!ending) gone_ += static_cast<std::int64_t>(group_.drop_silent(clock_.seconds()).size());
     const std::lock_guard lock(mutex_);
-    counts_.lost += static_cast<std::int64_t>(lost);
+    counts_.lost = gone_;
     counts_.screens = static_cast<std::int64_t>(group_.size());
     counts_.late = group_.late_count();
   }
@@ -154,12 +156,12 @@ void ScreenServer::wait_for_work() {
 /// ZeroMQ asks whether a peer may connect (ZAP, rfc.zeromq.org/spec/27): by its public key.
 void ScreenServer::check_peers() {
   if (!keys_.are_given()) return;
-  std::uint8_t known[key_bytes];
-  zmq_z85_decode(known, keys_.screen_public.c_str());
+  std::uint8_t known[key_bytes]{};
+  const bool is_known = zmq_z85_decode(known, keys_.screen_public.c_str()) != nullptr;
   while (true) {
     std::vector<zmq::message_t> parts;
     if (!zmq::recv_multipart(gate_, std::back_inserter(parts), zmq::recv_flags::dontwait)) return;
-    const bool is_welcome = parts.size() == 7 && parts[5].to_string_view() == "CURVE" &&
+    const bool is_welcome = is_known && parts.size() == 7 && parts[5].to_string_view() == "CURVE" &&
                             parts[6].size() == key_bytes &&
                             std::equal(known, known + key_bytes, parts[6].data<std::uint8_t>());
     const std::string id = parts.size() > 1 ? parts[1].to_string() : "";
@@ -220,6 +222,14 @@ void ScreenServer::swap() {
   for (const std::string& member : group_.swap()) send(member, SwapMessage{frame_});
 }
 
+/// A screen that draws for long is silent as one whose process ended, but the connection of the
+/// latter is gone, which sending notices. It hears again what it does when it is ready.
+void ScreenServer::find_gone() {
+  if (clock_.seconds() - asked_ < repeat_seconds) return;
+  asked_ = clock_.seconds();
+  for (const auto& [member, frame] : group_.late_frames()) send(member, SwapMessage{frame});
+}
+
 void ScreenServer::send_frame() {
   const double now = clock_.seconds();
   if (group_.is_drawing()) return;
@@ -257,10 +267,17 @@ void ScreenServer::send(const std::string& member, const ToScreen& message) {
   send(member, view::bytes_of(message));
 }
 
-/// A peer that is gone is no error: its silence is noticed.
+/// A peer that is gone is no error: it takes part no more. What a full queue does not take is lost.
 void ScreenServer::send(const std::string& member, const Bytes& bytes) {
-  socket_.send(zmq::buffer(member), zmq::send_flags::sndmore | zmq::send_flags::dontwait);
-  socket_.send(zmq::buffer(bytes), zmq::send_flags::dontwait);
+  try {
+    const auto first = zmq::send_flags::sndmore | zmq::send_flags::dontwait;
+    if (socket_.send(zmq::buffer(member), first)) {
+      socket_.send(zmq::buffer(bytes), zmq::send_flags::dontwait);
+    }
+  } catch (const zmq::error_t& error) {
+    if (error.num() != EHOSTUNREACH) throw;
+    if (group_.leave(member)) ++gone_;
+  }
 }
 
 }  // namespace tetwarp::view

@@ -59,6 +59,7 @@ class ScreenServer {
   void welcome(const std::string& member, const JoinMessage& message);
   void check_peers();
   void swap();
+  void find_gone();
   void send_frame();
   void send(const std::string& member, const ToScreen& message);
   void send(const std::string& member, const Bytes& bytes);
@@ -79,6 +80,8 @@ class ScreenServer {
   std::optional<HeadPose> tracked_;
   std::uint64_t frame_ = 0;
   double sent_ = 0;           ///< when the last frame was [s]
+  double asked_ = 0;          ///< when find_gone() was [s]
+  std::int64_t gone_ = 0;     ///< members that fell silent or whose connection ended
   bool needs_frame_ = false;  ///< something changed since then
 
   mutable std::mutex mutex_;  ///< guards the members up to the next comment

@@ -19,7 +19,7 @@ void check_screen(const Screen& screen, const Point3& observer) {
     throw std::invalid_argument("screen " + screen.name + ": " + problem);
   };
   for (const Point3& corner : {screen.lower_left, screen.lower_right, screen.upper_right}) {
-    if (!is_finite(corner)) refuse("a corner is not finite");
+    if (!is_in_world(corner)) refuse("a corner is not within 1e9 m of the origin");
   }
   const Point3 across = minus(screen.lower_right, screen.lower_left);
   const Point3 up = minus(screen.upper_right, screen.lower_right);
@@ -32,15 +32,27 @@ void check_screen(const Screen& screen, const Point3& observer) {
         "the observer is not in front of it; its corners are lower left, lower right and upper "
         "right as the observer sees them");
   }
-  for (std::size_t n = 2; n < 4; ++n) {
-    if (screen.window[n] < 0 || screen.window[n] > 16384) refuse("its window is 0 to 16384 pixels");
+  for (std::size_t n = 0; n < 4; ++n) {
+    const bool is_place = n < 2;
+    const std::int32_t low = is_place ? -farthest_window : 0;
+    const std::int32_t high = is_place ? farthest_window : largest_window;
+    if (screen.window[n] >= low && screen.window[n] <= high) continue;
+    refuse(std::string("window (Geometry in a .pvx file): ") +
+           (is_place ? "left and top are " : "width and height are ") + std::to_string(low) +
+           " to " + std::to_string(high) + " pixels");
   }
 }
 }  // namespace
 
+bool is_in_world(const Point3& x) {
+  return std::ranges::all_of(x, [](double part) { return std::abs(part) < largest_world; });
+}
+
 void check_room(Room& room) {
   if (room.screens.empty()) throw std::invalid_argument("screens: there are none");
-  if (!is_finite(room.observer)) throw std::invalid_argument("observer: is not finite");
+  if (!is_in_world(room.observer)) {
+    throw std::invalid_argument("observer: is not within 1e9 m of the origin");
+  }
   if (!(room.eye_separation >= 0 && room.eye_separation < 1)) {
     throw std::invalid_argument("eye_separation: is 0 to 1 m");
   }

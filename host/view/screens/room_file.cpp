@@ -58,7 +58,8 @@ Screen read_screen(const SceneValue& value, Stereo stereo) {
   if (const auto window = object.find("window")) {
     const std::vector<double> numbers = window->numbers(4);
     for (std::size_t n = 0; n < 4; ++n) {
-      if (!(std::abs(numbers[n]) <= 65535)) window->fail("is [left, top, width, height] in pixels");
+      if (!(std::abs(numbers[n]) <= farthest_window))
+        window->fail("is [left, top, width, height] in pixels");
       screen.window[n] = static_cast<std::int32_t>(numbers[n]);
     }
   }

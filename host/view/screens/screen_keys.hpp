@@ -21,6 +21,9 @@ std::string screen_text(const ScreenKeys& keys);
 /// @throws IoError  in one line naming the file
 ScreenKeys read_screen_keys(const std::string& path, bool is_master);
 
+/// Keys in use are not overwritten. @throws IoError  there is such a file or link
+void check_no_file(const std::string& path);
+
 /// Whether an address of ZeroMQ is reached from this machine alone.
 bool is_loopback(const std::string& address);
 

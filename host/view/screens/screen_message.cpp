@@ -10,7 +10,6 @@
 namespace tetwarp::view {
 namespace {
 constexpr std::array<char, 4> letters{'t', 'w', 's', '1'};
-constexpr double largest_world = 1e9;
 
 void write(ByteWriter& to, const JoinMessage& message) {
   to.add_text(message.screen);
@@ -61,10 +60,6 @@ void write(ByteWriter& to, const SwapMessage& message) {
 void write(ByteWriter&, const EndMessage&) {}
 void write(ByteWriter&, const WhoMessage&) {}
 
-bool is_in_world(const Point3& x) {
-  return std::ranges::all_of(x, [](double part) { return std::abs(part) < largest_world; });
-}
-
 HeadPose read_head(ByteReader& from) {
   const auto head = from.get<HeadPose>();
   double size = 0;
@@ -92,8 +87,9 @@ WelcomeMessage read_welcome(ByteReader& from) {
               message.wait > 0 && message.wait <= 60,
           "no screen");
   for (std::size_t n = 0; n < 4; ++n) {
-    const std::int32_t low = n < 2 ? -65536 : 0;
-    require(screen.window[n] >= low && screen.window[n] <= 65536, "no window");
+    const std::int32_t low = n < 2 ? -farthest_window : 0;
+    const std::int32_t high = n < 2 ? farthest_window : largest_window;
+    require(screen.window[n] >= low && screen.window[n] <= high, "no window");
   }
   return message;
 }

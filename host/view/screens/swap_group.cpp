@@ -5,6 +5,11 @@
 #include <algorithm>
 
 namespace tetwarp::view {
+namespace {
+/// A process draws and speaks in one thread, so it is silent while it draws, and the first picture
+/// of a large volume takes seconds without a graphics card.
+constexpr double busy_patience = 15;  // times the longest silence of an idle member
+}  // namespace
 
 SwapGroup::Member SwapGroup::join(const Member& member, const std::string& screen, double now) {
   Member before;
@@ -16,8 +21,8 @@ SwapGroup::Member SwapGroup::join(const Member& member, const std::string& scree
   return before;
 }
 
-void SwapGroup::leave(const Member& member) {
-  members_.erase(member);
+bool SwapGroup::leave(const Member& member) {
+  return members_.erase(member) > 0;
 }
 
 bool SwapGroup::hear(const Member& member, double now) {
@@ -30,8 +35,10 @@ bool SwapGroup::hear(const Member& member, double now) {
 std::vector<std::string> SwapGroup::drop_silent(double now) {
   std::vector<std::string> screens;
   std::erase_if(members_, [&](const auto& entry) {
-    const bool is_lost = now - entry.second.heard > silent_;
-    if (is_lost) screens.push_back(entry.second.screen);
+    const State& state = entry.second;
+    const bool is_busy = state.doing == Doing::drawing || state.doing == Doing::late;
+    const bool is_lost = now - state.heard > (is_busy ? busy_patience * silent_ : silent_);
+    if (is_lost) screens.push_back(state.screen);
     return is_lost;
   });
   return screens;
@@ -81,6 +88,14 @@ std::vector<SwapGroup::Member> SwapGroup::swap() {
   }
   is_drawing_ = false;
   return all;
+}
+
+std::map<SwapGroup::Member, std::uint64_t> SwapGroup::late_frames() const {
+  std::map<Member, std::uint64_t> frames;
+  for (const auto& [member, state] : members_) {
+    if (state.doing == Doing::late) frames[member] = state.frame;
+  }
+  return frames;
 }
 
 std::vector<SwapGroup::Member> SwapGroup::members() const {

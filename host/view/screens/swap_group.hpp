@@ -17,12 +17,14 @@ class SwapGroup {
   using Member = std::string;
 
   /// @param wait    longest time from a frame to its swap [s]
-  /// @param silent  a member that was not heard of for so long is lost [s]
+  /// @param silent  a member that was not heard of for so long is lost [s]; 15 times as long while
+  ///                it draws
   SwapGroup(double wait, double silent) : wait_(wait), silent_(silent) {}
 
   /// A process shows a screen from now on. @returns another one that showed it, or empty
   Member join(const Member& member, const std::string& screen, double now);
-  void leave(const Member& member);
+  /// @returns whether it was a member
+  bool leave(const Member& member);
   /// @returns whether it is a member
   bool hear(const Member& member, double now);
   /// Removes members that are lost. @returns the screens that they showed
@@ -40,6 +42,8 @@ class SwapGroup {
   /// When may_swap() becomes true by itself [s]; only while is_drawing().
   double latest_swap() const { return begun_ + wait_; }
 
+  /// The frames that late members draw.
+  std::map<Member, std::uint64_t> late_frames() const;
   std::vector<Member> members() const;
   std::size_t size() const { return members_.size(); }
   /// Members that were not ready in time, counted once for each frame.

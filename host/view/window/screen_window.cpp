@@ -206,10 +206,13 @@ void ScreenWindow::draw(const FrameMessage& message) {
   link_.send(ReadyMessage{message.frame});
 }
 
-/// Moves bodies and warps volumes, unless the state is the one that is drawn.
+/// Moves bodies and warps volumes, unless the state is the one that is drawn. Volumes are not
+/// warped while surfaces are shown; when the look changes, they are missing for the same state.
 void ScreenWindow::show_state(const FrameMessage& message) {
   const auto look = static_cast<VolumeLook>(message.look.volumes);
-  const bool is_new = message.state != state_bytes_;
+  const bool needs_volumes =
+      look != VolumeLook::surfaces && !scene_.volumes.empty() && frame_.volumes.empty();
+  const bool is_new = message.state != state_bytes_ || needs_volumes;
   if (is_new) {
     const SharedState state = state_of(message.state, shared_);
     set_frame(shared_, state, frame_);

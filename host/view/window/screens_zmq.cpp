@@ -215,6 +215,9 @@ void show_screen(const ViewOptions& options, const volatile std::sig_atomic_t& i
 
 void send_head(const ViewOptions& options) {
   ScreenLink link(options.join, keys_of(options, false));
+  if (!link.wait_for_master(start_seconds)) {
+    throw std::runtime_error("no master at " + options.join);
+  }
   std::string line;
   for (std::int64_t number = 1; std::getline(std::cin, line); ++number) {
     const std::optional<HeadPose> head = head_of(line);
@@ -229,10 +232,12 @@ void send_head(const ViewOptions& options) {
 }
 
 void write_screen_keys(const std::string& name) {
+  const std::string master_file = name + ".key", screen_file = name + "_screen.key";
+  for (const std::string& file : {master_file, screen_file}) check_no_file(file);
   const ScreenKeys keys = make_screen_keys();
   umask(077);
-  write_finished_file(name + ".key", master_text(keys));
-  write_finished_file(name + "_screen.key", screen_text(keys));
+  write_finished_file(master_file, master_text(keys));
+  write_finished_file(screen_file, screen_text(keys));
 }
 
 }  // namespace tetwarp::view
