@@ -51,6 +51,11 @@ void read_samples_in_child(const std::string& path,
   std::vector<std::byte> slice(static_cast<std::size_t>(dims[0] * dims[1] * found->components) *
                                size_of(found->type));
   run_reader(path, {"samples", array, series}, limits_for(path), [&](auto& message) {
+    ForeignImage now;
+    message(now);
+    if (now.grid != image.grid || now.arrays != image.arrays) {
+      throw IoError(path, "", "has changed while it was read; read it again");
+    }
     for (std::int64_t k = 0; k < dims[2]; ++k) {
       expect_result(path, message);
       message.read_bytes(slice.data(), slice.size());

@@ -15,6 +15,8 @@ struct ForeignArray {
   std::string name;
   PixelType type = PixelType::uint8;
   int components = 1;
+
+  bool operator==(const ForeignArray&) const = default;
 };
 
 /// What tetwarp-read tells of an image.
@@ -27,6 +29,9 @@ struct ForeignImage {
   std::vector<std::string> notes;     ///< as VolumeHeader::notes
 };
 
+/// Called with an image, before its samples.
+using TakeImage = std::function<void(const ForeignImage& image)>;
+
 /// Called with the samples of one slice after the other.
 using TakeSlice = std::function<void(const void* samples, std::size_t bytes)>;
 
@@ -38,6 +43,7 @@ ForeignImage read_image_in_child(const std::string& path, const std::string& ser
 /// Has the program read the samples of an array.
 /// @param image  what read_image_in_child() returned
 /// @param array  its name
+/// @throws IoError  as run_reader(); grid or arrays are no more those of `image`
 void read_samples_in_child(const std::string& path,
                            const std::string& series,
                            const ForeignImage& image,

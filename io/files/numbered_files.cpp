@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <regex>
+#include <string_view>
 #include <system_error>
 #include <tetwarp/error.hpp>
 
@@ -60,6 +60,55 @@ bool is_list(const std::string& path) {
          has_extension(path, ".series");
 }
 
+constexpr std::string_view blanks = " \t\r\n\v\f";
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = std::min(text.size(), text.find_first_not_of(blanks));
+  return std::string(text.substr(first, text.find_last_not_of(blanks) + 1 - first));
+}
+
+/// The file of samples that a header of MetaImage or NRRD names; empty: none.
+std::string samples_named_in(const std::string& path) {
+  std::string text(1 << 16, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(text.data(), std::ssize(text));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  text.resize(std::min(text.size(), text.find('\0')));  // samples may follow
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.size(), text.find_first_of("\r\n", at));
+    const std::string line = trimmed(std::string_view(text).substr(at, end - at));
+    at = end + 1;
+    for (const std::string_view key : {"data file:", "datafile:"}) {
+      if (line.starts_with(key)) return trimmed(std::string_view(line).substr(key.size()));
+    }
+    const std::size_t sign = line.find('=');
+    if (sign != std::string::npos && trimmed(line.substr(0, sign)) == "ElementDataFile") {
+      return trimmed(line.substr(sign + 1));
+    }
+  }
+  return "";
+}
+
+/// The texts in quotes behind each `key` and `sign`, with blanks or without around the sign.
+void add_quoted(const std::string& text,
+                std::string_view key,
+                char sign,
+                std::vector<std::string>& found) {
+  const auto past_blanks = [&](std::size_t at) {
+    return std::min(text.size(), text.find_first_not_of(blanks, at));
+  };
+  for (std::size_t at = 0; (at = text.find(key, at)) != std::string::npos;) {
+    at = past_blanks(at + key.size());
+    if (at >= text.size() || text[at] != sign) continue;
+    at = past_blanks(at + 1);
+    if (at >= text.size() || (text[at] != '"' && text[at] != '\'')) continue;
+    const std::size_t end = text.find_first_of("\"'", at + 1);
+    if (end == std::string::npos) return;
+    found.push_back(text.substr(at + 1, end - at - 1));
+    at = end + 1;
+  }
+}
+
 /// Adds the other file of a pair of header and samples: of MetaImage, NRRD and NIfTI.
 void add_partner(const std::string& path, std::vector<std::string>& files) {
   const auto add = [&](const fs::path& file) {
@@ -67,11 +116,8 @@ void add_partner(const std::string& path, std::vector<std::string>& files) {
     if (file != path && fs::is_regular_file(file, error)) files.push_back(file.string());
   };
   if (has_extension(path, ".mhd") || has_extension(path, ".nhdr")) {
-    std::string text(1 << 16, '\0');
-    std::ifstream(path, std::ios::binary).read(text.data(), std::ssize(text));
-    static const std::regex entry("(ElementDataFile\\s*=|\ndata ?file:)[ \t]*([^\r\n]+)");
-    std::smatch found;
-    if (std::regex_search(text, found, entry)) add(fs::path(path).parent_path() / found[2].str());
+    const std::string samples = samples_named_in(path);
+    if (!samples.empty()) add(fs::path(path).parent_path() / samples);
   }
   const std::vector<std::string> ends{".hdr", ".hdr.gz", ".img", ".img.gz"};
   for (const std::string& end : ends) {
@@ -87,9 +133,11 @@ void add_files(const std::string& path, int depth, std::vector<std::string>& fil
   if (!is_list(path) || depth == 0) return;
   std::ifstream in(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  static const std::regex entry("(file\\s*=|\"name\"\\s*:)\\s*[\"']([^\"']*)[\"']");
-  for (std::sregex_iterator at(text.begin(), text.end(), entry), end; at != end; ++at) {
-    const fs::path named = fs::path(path).parent_path() / (*at)[2].str();
+  std::vector<std::string> listed;
+  add_quoted(text, "file", '=', listed);
+  add_quoted(text, "\"name\"", ':', listed);
+  for (const std::string& name : listed) {
+    const fs::path named = fs::path(path).parent_path() / name;
     std::error_code error;
     if (fs::is_regular_file(named, error)) add_files(named.string(), depth - 1, files);
   }

@@ -95,6 +95,10 @@ void check_alike(const std::string& path, const std::vector<DicomSlice>& slices)
       fail("number of rows or columns" + differs);
     }
     if (slice.components != first.components) fail("number of components" + differs);
+    if (slice.colors != first.colors) {
+      fail("PhotometricInterpretation '" + slice.colors + "'" + differs);
+    }
+    if (slice.has_table != first.has_table) fail("presence of a ModalityLUTSequence" + differs);
     if (!are_near(slice.orientation, first.orientation, tolerance)) fail("orientation" + differs);
     if (!are_near(slice.spacing, first.spacing, tolerance * first.spacing[0])) {
       fail("pixel spacing" + differs);

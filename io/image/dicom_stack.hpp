@@ -18,6 +18,8 @@ struct DicomSlice {
   int components = 1;                    ///< SamplesPerPixel
   int bits = 8;                          ///< BitsStored
   bool is_signed = false;                ///< PixelRepresentation
+  std::string colors = {};               ///< PhotometricInterpretation
+  bool has_table = false;                ///< ModalityLUTSequence, values by a table
   std::vector<double> position = {};     ///< ImagePositionPatient, 3 numbers
   std::vector<double> orientation = {};  ///< ImageOrientationPatient, 6 numbers
   std::vector<double> spacing = {};      ///< PixelSpacing: between rows, between columns

@@ -14,6 +14,7 @@
 #include "io/files/finished_file.hpp"
 #include "io/files/scratch_file.hpp"
 #include "io/files/sink_checks.hpp"
+#include "io/files/xml_text.hpp"
 #include "io/image/image_header.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
@@ -43,17 +44,6 @@ const char* vtk_type_of(PixelType type) {
       return "Float64";
   }
   return "";
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char letter : text) {
-    safe += letter == '&'   ? "&amp;"
-            : letter == '<' ? "&lt;"
-            : letter == '"' ? "&quot;"
-                            : std::string(1, letter);
-  }
-  return safe;
 }
 
 std::string listed_numbers(std::span<const double> numbers) {
@@ -136,10 +126,10 @@ class VtiSink : public VolumeSink {
         "\" header_type=\"UInt64\">\n  <ImageData WholeExtent=\"" + extent + "\" Origin=\"" +
         listed_numbers(grid_.origin) + "\" Spacing=\"" + listed_numbers(grid_.spacing) +
         "\" Direction=\"" + listed_numbers(grid_.direction) + "\">\n    <Piece Extent=\"" + extent +
-        "\">\n      <PointData Scalars=\"" + escaped(active) + "\">\n";
+        "\">\n      <PointData Scalars=\"" + xml_text(active) + "\">\n";
     for (std::size_t a = 0; a < arrays_.size(); ++a) {
       text += std::string("        <DataArray type=\"") + vtk_type_of(arrays_[a].type) +
-              "\" Name=\"" + escaped(arrays_[a].name) + "\" NumberOfComponents=\"" +
+              "\" Name=\"" + xml_text(arrays_[a].name) + "\" NumberOfComponents=\"" +
               std::to_string(arrays_[a].components) + "\" format=\"appended\" offset=\"" +
               std::to_string(offsets_[a]) + "\"/>\n";
     }

@@ -138,6 +138,8 @@ std::vector<DicomSlice> slices_of(const std::string& path, const DicomHeader& he
   slice.components = header.count(0x0028, 0x0002, 1);
   slice.bits = header.count(0x0028, 0x0101, 8);
   slice.is_signed = header.count(0x0028, 0x0103, 0) == 1;
+  slice.colors = header.text(0x0028, 0x0004);
+  slice.has_table = header.has(0x0028, 0x3000);
   slice.position = header.numbers(0x0020, 0x0032);
   slice.orientation = header.numbers(0x0020, 0x0037);
   slice.spacing = header.numbers(0x0028, 0x0030);
@@ -256,11 +258,8 @@ class DicomPixels {
   gdcm::PixelFormat format_;
   std::vector<char> data_;
 };
-}  // namespace
 
-ForeignImage read_dicom_image(const std::string& path, const std::string& series) {
-  const DicomFiles files = read_headers(path);
-  const DicomStack stack = stack_of(path, files.slices, series);
+ForeignImage dicom_image_of(const DicomFiles& files, const DicomStack& stack) {
   const std::string& first = stack.slices.front().file;
   const DicomHeader header(first);
   check_pixels(first, header);
@@ -283,9 +282,20 @@ ForeignImage read_dicom_image(const std::string& path, const std::string& series
   }
   return image;
 }
+}  // namespace
 
-void read_dicom_samples(const std::string& path, const std::string& series, const TakeSlice& take) {
-  const DicomStack stack = stack_of(path, read_headers(path).slices, series);
+ForeignImage read_dicom_image(const std::string& path, const std::string& series) {
+  const DicomFiles files = read_headers(path);
+  return dicom_image_of(files, stack_of(path, files.slices, series));
+}
+
+void read_dicom_samples(const std::string& path,
+                        const std::string& series,
+                        const TakeImage& take_image,
+                        const TakeSlice& take) {
+  const DicomFiles files = read_headers(path);
+  const DicomStack stack = stack_of(path, files.slices, series);
+  take_image(dicom_image_of(files, stack));
   std::vector<std::byte> values(
       static_cast<std::size_t>(stack.grid.dims[0] * stack.grid.dims[1] * stack.components) *
       size_of(stack.type));

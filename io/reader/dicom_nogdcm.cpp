@@ -12,7 +12,10 @@ ForeignImage read_dicom_image(const std::string& path, const std::string&) {
                 "NIfTI, for example by dcm2niix");
 }
 
-void read_dicom_samples(const std::string& path, const std::string& series, const TakeSlice&) {
+void read_dicom_samples(const std::string& path,
+                        const std::string& series,
+                        const TakeImage&,
+                        const TakeSlice&) {
   read_dicom_image(path, series);
 }
 

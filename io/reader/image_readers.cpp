@@ -13,9 +13,10 @@ ForeignImage read_foreign_image(const std::string& path, const std::string& seri
 void read_foreign_samples(const std::string& path,
                           const std::string& array,
                           const std::string& series,
+                          const TakeImage& take_image,
                           const TakeSlice& take) {
-  if (is_dicom(path)) return read_dicom_samples(path, series, take);
-  read_vtk_samples(path, array, take);
+  if (is_dicom(path)) return read_dicom_samples(path, series, take_image, take);
+  read_vtk_samples(path, array, take_image, take);
 }
 
 }  // namespace tetwarp

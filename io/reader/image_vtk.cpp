@@ -76,17 +76,15 @@ void add_names(vtkFieldData& data, const std::string& group, std::vector<std::st
     names.push_back(group + "/" + text_of(data.GetArrayName(a)));
   }
 }
-}  // namespace
 
-ForeignImage read_vtk_image(const std::string& path) {
-  const vtkSmartPointer<vtkImageData> data = read_image(path);
+ForeignImage vtk_image_of(const std::string& path, vtkImageData& data) {
   ForeignImage image;
-  image.grid = grid_of(path, *data);
-  vtkPointData& points = *data->GetPointData();
+  image.grid = grid_of(path, data);
+  vtkPointData& points = *data.GetPointData();
   for (int a = 0; a < points.GetNumberOfArrays(); ++a) {
     const std::string name = text_of(points.GetArrayName(a));
     vtkDataArray* const array = points.GetArray(a);
-    const std::optional<PixelType> type = sample_type(*data, array);
+    const std::optional<PixelType> type = sample_type(data, array);
     if (type && !name.empty()) {
       image.arrays.push_back({name, *type, array->GetNumberOfComponents()});
       if (array == points.GetScalars() || image.active.empty()) image.active = name;
@@ -94,14 +92,24 @@ ForeignImage read_vtk_image(const std::string& path) {
       image.not_read.push_back("PointData/" + name);
     }
   }
-  add_names(*data->GetCellData(), "CellData", image.not_read);
-  add_names(*data->GetFieldData(), "FieldData", image.not_read);
+  add_names(*data.GetCellData(), "CellData", image.not_read);
+  add_names(*data.GetFieldData(), "FieldData", image.not_read);
   return image;
 }
+}  // namespace
 
-void read_vtk_samples(const std::string& path, const std::string& name, const TakeSlice& take) {
+ForeignImage read_vtk_image(const std::string& path) {
+  return vtk_image_of(path, *read_image(path));
+}
+
+void read_vtk_samples(const std::string& path,
+                      const std::string& name,
+                      const TakeImage& take_image,
+                      const TakeSlice& take) {
   const vtkSmartPointer<vtkImageData> data = read_image(path);
-  const Grid grid = grid_of(path, *data);
+  const ForeignImage image = vtk_image_of(path, *data);
+  take_image(image);
+  const Grid& grid = image.grid;
   vtkDataArray* const array = data->GetPointData()->GetArray(name.c_str());
   const std::optional<PixelType> type = sample_type(*data, array);
   if (!type) throw IoError(path, name, "no such array");

@@ -31,7 +31,10 @@ ForeignImage read_vtk_image(const std::string& path) {
                 "VTKHDF of type ImageData");
 }
 
-void read_vtk_samples(const std::string& path, const std::string&, const TakeSlice&) {
+void read_vtk_samples(const std::string& path,
+                      const std::string&,
+                      const TakeImage&,
+                      const TakeSlice&) {
   read_vtk_image(path);
 }
 

@@ -84,11 +84,15 @@ void answer(MessageWriter& message,
     message(ChildOutcome::result);
     message(image);
   } else if (what == "samples") {
-    message(ChildOutcome::result);
-    calls.samples(path, words.at(3), words.at(4), [&](const void* samples, std::size_t bytes) {
+    const auto send_image = [&](const ForeignImage& image) {
+      message(ChildOutcome::result);
+      message(image);
+    };
+    const auto send_slice = [&](const void* samples, std::size_t bytes) {
       message(ChildOutcome::result);  // an error may come in place of any slice
       message.write_bytes(samples, bytes);
-    });
+    };
+    calls.samples(path, words.at(3), words.at(4), send_image, send_slice);
   } else {
     MeshImportOptions options;
     options.needs_solids = what == "solids";
@@ -102,7 +106,8 @@ void answer(MessageWriter& message,
 
 int send_result(int argc, char** argv, const ReaderCalls& calls) {
   if (argc < 4 || argc > 6) {
-    std::fputs("tetwarp-read is started by tetwarp, to read meshes of other programs\n", stderr);
+    std::fputs("tetwarp-read is started by tetwarp, to read meshes and images of other programs\n",
+               stderr);
     return 2;
   }
   if (!end_with_caller()) return 1;

@@ -24,6 +24,7 @@ struct ReaderCalls {
   std::function<void(const std::string& path,
                      const std::string& array,
                      const std::string& series,
+                     const TakeImage& take_image,
                      const TakeSlice& take)>
       samples = {};
 };

@@ -18,12 +18,15 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <array>
 #include <fstream>
+#include <string>
 #include <tetwarp/error.hpp>
+#include <type_traits>
 #include <vector>
 
 #include "io/files/extension.hpp"
@@ -37,6 +40,14 @@ template <class Reader>
 vtkSmartPointer<vtkPointSet> output_of(const std::string& path, Reader& reader) {
   const VtkErrorNotes notes(reader);
   reader.SetFileName(path.c_str());
+  if constexpr (std::is_base_of_v<vtkXMLReader, Reader>) {
+    reader.UpdateInformation();
+    if (reader.GetNumberOfTimeSteps() > 1) {
+      throw IoError(path, "",
+                    "has " + std::to_string(reader.GetNumberOfTimeSteps()) +
+                        " steps, of which one would be read; write a file of each, or VTKHDF");
+    }
+  }
   reader.Update();
   vtkPointSet* const output = vtkPointSet::SafeDownCast(reader.GetOutputDataObject(0));
   if (reader.GetErrorCode() == 0 && !notes.has_error() && output != nullptr &&
@@ -58,6 +69,12 @@ vtkSmartPointer<vtkPointSet> read_vtk_point_set(const std::string& path) {
   if (has_extension(path, ".obj")) return output_of(path, *vtkNew<vtkOBJReader>());
   if (has_extension(path, ".vtp")) return output_of(path, *vtkNew<vtkXMLPolyDataReader>());
   if (has_extension(path, ".vtu")) return output_of(path, *vtkNew<vtkXMLUnstructuredGridReader>());
+  if (!has_extension(path, ".vtk")) {
+    throw IoError(
+        path, "",
+        "is no file of a single surface: series and blocks are not read as surfaces; name "
+        "one of their files, or write VTKHDF");
+  }
   return output_of(path, *vtkNew<vtkDataSetReader>());
 }
 

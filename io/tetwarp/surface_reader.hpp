@@ -13,12 +13,14 @@
 
 namespace tetwarp {
 
-/// The triangles of a file and their points at each step: a VTKHDF UnstructuredGrid, or a file that
-/// import_mesh() reads. Unlike read_surface() it keeps triangles that are there twice and points of
-/// no triangle: a proof must see them, and numbers of triangles are those of the file.
+/// The triangles of a file and their points at each step: a VTKHDF UnstructuredGrid, or a file of
+/// one state, .stl, .ply, .obj, .vtp, .vtu or .vtk, or Gmsh's .msh. Unlike read_surface() it keeps
+/// triangles that are there twice and points of no triangle: a proof must see them, and numbers of
+/// triangles are those of the file.
 class TETWARP_IO_EXPORT SurfaceReader {
  public:
-  /// @throws IoError  the file is missing, damaged or of another format, or has no triangle
+  /// @throws IoError  the file is missing, damaged or of another format, has no triangle, or a
+  ///                  motion that is not read: of VTK's formats, steps or an array `displacement`
   explicit SurfaceReader(const std::string& path);
   SurfaceReader(SurfaceReader&&) noexcept;
   ~SurfaceReader();

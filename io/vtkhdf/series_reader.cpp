@@ -62,7 +62,9 @@ std::vector<double> SeriesReader::read(const std::string& path) const {
   const std::size_t rows = static_cast<std::size_t>(dataset.rows());
   const std::size_t width =
       dataset.dims.size() == 1 ? 1 : static_cast<std::size_t>(dataset.dims[1]);
-  h5::check_memory(dataset.file, dataset.name, static_cast<double>(rows * (width + 1)) * 8);
+  // As doubles, since products of integers may overflow.
+  h5::check_memory(dataset.file, dataset.name,
+                   8.0 * static_cast<double>(rows) * (static_cast<double>(width) + 1));
   std::vector<double> numbers(rows * width);
   const std::array<std::int64_t, 2> start{0, 0};
   if (!numbers.empty()) {

@@ -33,6 +33,10 @@ SurfaceReader::SurfaceReader(const std::string& path) : state_(std::make_unique<
   if ((has_mesh_extension(path) || has_surface_extension(path)) &&
       kind_of(path) == FileKind::unknown) {
     state_->imported = import_mesh(path, {.needs_solids = false});
+    if (std::ranges::count(state_->imported.left_out, "point array 'displacement'") > 0) {
+      throw IoError(path, "displacement",
+                    "is not read of this format; move the points by it, or write VTKHDF");
+    }
     state_->triangles = std::move(state_->imported.triangles);
   } else {
     state_->file.emplace(path);

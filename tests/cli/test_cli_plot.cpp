@@ -9,6 +9,7 @@
 #include <random>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/cli/tools/chart.hpp"
@@ -129,6 +130,54 @@ TEST(Plot, RefusesWhatIsNoSeriesOrNotInIt) {
   }
 }
 
+/// Numbers of rows times columns, and of bytes, are beyond 2^64.
+TEST(Plot, RefusesADatasetThatNoMemoryHolds) {
+  const SimulateScene scene;
+  ASSERT_EQ(scene.simulate({"-o", "run", "--steps", "1"}).exit_code, 0);
+  const hid_t file = H5Fopen(scene.in("run", "series.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const std::array<hsize_t, 2> dims{1 << 20, (hsize_t{1} << 44) + 1}, chunk{1, 16};
+  const hid_t space = H5Screate_simple(2, dims.data(), nullptr);
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(layout, 2, chunk.data());
+  const hid_t wide =
+      H5Dcreate2(file, "wide", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+  ASSERT_GE(wide, 0);
+  H5Dclose(wide);
+  H5Pclose(layout);
+  H5Sclose(space);
+  H5Fclose(file);
+
+  const CommandResult result =
+      run_command(scene, {"plot", "run", "-o", "out.svg", "--show", "wide"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("wide"), std::string::npos) << result.err;
+  EXPECT_FALSE(fs::exists(scene / "out.svg"));
+}
+
+/// Whichever run has the dataset that the other one lacks.
+TEST(Plot, RefusesGroupsThatDiffer) {
+  const SimulateScene scene;
+  ASSERT_EQ(scene.simulate({"-o", "all", "--steps", "1"}).exit_code, 0);
+  ASSERT_EQ(scene.simulate({"-o", "less", "--steps", "1"}).exit_code, 0);
+  const hid_t file = H5Fopen(scene.in("less", "series.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "seconds/linear", H5P_DEFAULT), 0);
+  H5Fclose(file);
+
+  for (const auto& [first, second] : {std::pair{"all", "less"}, {"less", "all"}}) {
+    const CommandResult result =
+        run_command(scene, {"plot", first, second, "-o", "out.svg", "--show", "seconds"});
+
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(
+        result.err.find(std::string(second) + ": seconds: has other datasets than in " + first),
+        std::string::npos)
+        << result.err;
+    EXPECT_FALSE(fs::exists(scene / "out.svg"));
+  }
+}
+
 TEST(Chart, KeepsEveryPeakInFewPointsPerPixel) {
   std::mt19937 random(51);
   std::normal_distribution<double> normal;
@@ -188,6 +237,34 @@ TEST(Chart, HasThreeToSevenTicksAtRoundNumbersWithinTheRange) {
     EXPECT_TRUE(std::abs(digit - 1) < 1e-6 || std::abs(digit - 2) < 1e-6 ||
                 std::abs(digit - 5) < 1e-6)
         << digit;
+  }
+}
+
+TEST(Chart, HasTicksAtBothEndsThatAreMultiplesOfTheirDistance) {
+  for (const double unit : {1.0, 0.1, 1e-7, 1e20}) {
+    for (int low = -30; low <= 30; ++low) {
+      for (const int extent : {3, 4, 5}) {  // with ticks every 0.5 or 1
+        const std::vector<double> ticks = chart_ticks(low * unit, (low + extent) * unit);
+
+        EXPECT_NEAR(ticks.front(), low * unit, 1e-9 * unit) << low << " + " << extent;
+        EXPECT_NEAR(ticks.back(), (low + extent) * unit, 1e-9 * unit) << low << " + " << extent;
+      }
+    }
+  }
+}
+
+TEST(Chart, LabelsTicksOfSmallRangesByDifferentNumbers) {
+  static const std::regex label("text-anchor=\"end\">([^<]*)</text>");
+  for (const double extent : {1.0, 1e-6, 1e-8, 1e-10}) {
+    const std::string svg =
+        cli::draw_chart({"step", {{"run", 0, 1}}, {{"y", {{{"c", {3, 3 + extent}}}}}}});
+    std::vector<std::string> labels;
+    for (std::sregex_iterator at(svg.begin(), svg.end(), label), end; at != end; ++at) {
+      labels.push_back((*at)[1]);
+    }
+
+    ASSERT_GE(labels.size(), 2U) << extent;
+    EXPECT_EQ(std::adjacent_find(labels.begin(), labels.end()), labels.end()) << svg;
   }
 }
 

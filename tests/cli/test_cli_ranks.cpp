@@ -156,7 +156,9 @@ TEST_F(Ranks, EndTogetherWithOneLineWhenOneOfThemFails) {
 TEST_F(Ranks, PrintACommonErrorOnce) {
   for (const Names& words :
        {Names{"volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--memory", "much"},
-        Names{"volume.vtkhdf", "none.vtkhdf", "-o", "out.vtkhdf"}, Names{"--batch", "jobs.json"}}) {
+        Names{"volume.vtkhdf", "none.vtkhdf", "-o", "out.vtkhdf"},
+        Names{"volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--resume", "--provenance"},
+        Names{"--batch", "jobs.json"}}) {
     const CommandResult result = run_three(words);
 
     EXPECT_NE(result.exit_code, 0);

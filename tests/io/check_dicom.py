@@ -272,6 +272,8 @@ def check_refusals(run, random_numbers):
         "not two perpendicular": lambda k: {(0x20, 0x37): (b"DS", "1\\0\\0\\1\\0\\0")},
         "a slope of 0": only({(0x28, 0x1053): (b"DS", "0")}),
         "PhotometricInterpretation": lambda k: {(0x28, 4): (b"CS", "PALETTE COLOR")},
+        "'PALETTE COLOR' differs": only({(0x28, 4): (b"CS", "PALETTE COLOR")}),
+        "'MONOCHROME1' differs": only({(0x28, 4): (b"CS", "MONOCHROME1")}),
         "frames": only({(0x28, 8): (b"IS", "3")}),
         "PixelData": only({(0x7FE0, 0x10): (b"OW", b"1234")}),
     }

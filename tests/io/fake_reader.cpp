@@ -50,8 +50,30 @@ ImportedMesh read(const std::string& path, const MeshImportOptions& options) {
   if (const auto end = ends.find(path); end != ends.end()) end->second();
   ImportedMesh mesh = two_steps();
   if (path == "large") mesh.mesh.rest_positions.assign(500'000, Point3{1, 2, 3});
+  if (path.ends_with("moved.vtu")) mesh.left_out = {"point array 'displacement'"};
+  if (path.ends_with(".vtu")) mesh.triangles = {{0, 1, 2}};
   mesh.merged = options.displacement.value_or("none") + (options.needs_solids ? ", solids" : "");
   return mesh;
+}
+
+/// Of one array of bytes. @param path  "wide": the image that the samples of "changed" belong to
+ForeignImage image(const std::string& path, const std::string&) {
+  ForeignImage image;
+  image.grid.dims = {path == "wide" ? 6 : 2, 3, 2};
+  image.arrays = {{"density", PixelType::uint8, 1}};
+  image.active = "density";
+  return image;
+}
+
+void samples(const std::string& path,
+             const std::string&,
+             const std::string& series,
+             const TakeImage& take_image,
+             const TakeSlice& take) {
+  take_image(image(path == "changed" ? "wide" : path, series));
+  const std::string slice = "abcdef";
+  take(slice.data(), slice.size());
+  take(slice.data(), slice.size());
 }
 }  // namespace
 }  // namespace tetwarp
@@ -59,5 +81,6 @@ ImportedMesh read(const std::string& path, const MeshImportOptions& options) {
 int main(int argc, char** argv) {
   const std::string path = argc > 1 ? argv[1] : "";
   if (path == "truncated") return write(STDOUT_FILENO, "\0\1\2\3", 4) == 4 ? 0 : 1;
-  std::_Exit(tetwarp::send_result(argc, argv, {tetwarp::read}));
+  std::_Exit(
+      tetwarp::send_result(argc, argv, {tetwarp::read, {}, {}, tetwarp::image, tetwarp::samples}));
 }

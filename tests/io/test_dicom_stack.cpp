@@ -149,6 +149,10 @@ TEST(DicomStack, RefusesWhatMakesNoVolume) {
             std::string::npos);
   EXPECT_NE(with([](auto& s) { s[3].components = 3; }).find("number of components"),
             std::string::npos);
+  EXPECT_NE(with([](auto& s) { s[3].colors = "MONOCHROME1"; }).find("'MONOCHROME1' differs"),
+            std::string::npos);
+  EXPECT_NE(with([](auto& s) { s[3].has_table = true; }).find("ModalityLUTSequence differs"),
+            std::string::npos);
   EXPECT_NE(
       with([](auto& s) { std::swap(s[3].spacing[0], s[3].spacing[1]); }).find("pixel spacing"),
       std::string::npos);

@@ -4,10 +4,13 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <string>
+#include <tetwarp/surface_reader.hpp>
 #include <vector>
 
 #include "io/child/child_message.hpp"
+#include "io/child/foreign_image.hpp"
 #include "io/import/mesh_child.hpp"
 #include "tests/support/io_files.hpp"
 
@@ -51,6 +54,32 @@ TEST_F(MeshChild, SendsMeshesOfManyMegabytes) {
   const ImportedMesh mesh = read_mesh_in_child("large", {}, limits);
 
   EXPECT_EQ(mesh.mesh.rest_positions, std::vector<Point3>(500'000, Point3{1, 2, 3}));
+}
+
+/// A proof about the points at rest would say nothing of the motion.
+TEST_F(MeshChild, GivesNoSurfaceWhoseDisplacementIsLeftOut) {
+  const ScratchFolder folder;
+  const auto error_of = [&](const std::string& name) {
+    std::ofstream(folder / name) << "x";
+    return io_error([&] { const SurfaceReader reader(folder / name); });
+  };
+  EXPECT_EQ(error_of("rest.vtu"), "");
+  EXPECT_NE(error_of("moved.vtu").find("displacement: is not read of this format"),
+            std::string::npos);
+}
+
+TEST_F(MeshChild, RefusesSamplesOfAnotherImageThanItsHeader) {
+  const auto samples_of = [](const std::string& path) {
+    std::string all;
+    read_samples_in_child(path, "", read_image_in_child(path, ""), "density",
+                          [&](const void* samples, std::size_t bytes) {
+                            all.append(static_cast<const char*>(samples), bytes);
+                          });
+    return all;
+  };
+  EXPECT_EQ(samples_of("sound"), "abcdefabcdef");
+  EXPECT_NE(io_error([&] { samples_of("changed"); }).find("has changed while it was read"),
+            std::string::npos);
 }
 
 TEST_F(MeshChild, PassesErrorsOnInTheirWords) {

@@ -47,6 +47,40 @@ TEST(NumberedFiles, AreThoseThatAListNames) {
   EXPECT_EQ(files_of(folder / "a.vtu"), std::vector<std::string>{folder / "a.vtu"});
 }
 
+/// Without a newline at the end, with blanks, before samples and far beyond any stack.
+TEST(NumberedFiles, AreTheSamplesThatAHeaderNamesHoweverItEnds) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "x.raw") << "x";
+  const std::string meta = "NDims = 3\nElementDataFile = x.raw",
+                    nrrd = "NRRD0004\ndata file: x.raw";
+  for (const auto& [name, head] : {std::pair{"a.mhd", meta}, {"a.nhdr", nrrd}}) {
+    for (const std::string& end :
+         {std::string(), std::string("\n"), std::string(" \t\r\n"), std::string(" "),
+          std::string(100'000, '\0'), std::string(100'000, ' ')}) {
+      std::ofstream(folder / name, std::ios::binary) << head << end;
+
+      EXPECT_EQ(files_of(folder / name),
+                (std::vector<std::string>{folder / name, folder / "x.raw"}))
+          << name << " and " << end.size() << " letters";
+    }
+    std::ofstream(folder / name, std::ios::binary) << head << std::string(1 << 20, 'y');
+    EXPECT_EQ(files_of(folder / name), std::vector<std::string>{folder / name});
+  }
+}
+
+TEST(NumberedFiles, OfListsWithEndlessTextsAreThoseBefore) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "a.vtu") << "x";
+  const std::string list = "<DataSet file" + std::string(1 << 20, ' ') + "= 'a.vtu'/>";
+  for (const std::string& end : {std::string(), "file='" + std::string(1 << 20, 'y'),
+                                 "file='" + std::string(1 << 20, 'y') + "'"}) {
+    std::ofstream(folder / "c.pvd") << list << end;
+
+    EXPECT_EQ(files_of(folder / "c.pvd"),
+              (std::vector<std::string>{folder / "c.pvd", folder / "a.vtu"}));
+  }
+}
+
 /// The examples of FIPS 180-4, and a million letters.
 TEST(Sha256OfBytes, IsThatOfTheStandard) {
   const auto hash_of = [](const std::string& text, std::size_t part) {

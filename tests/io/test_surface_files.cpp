@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tetwarp/scene_io.hpp>
+#include <tetwarp/surface_reader.hpp>
 
 #include "io/reader/surface_seams.hpp"
 #include "tests/support/io_files.hpp"
@@ -135,6 +136,42 @@ TEST(SurfaceFiles, OfAllFormatsGiveAClosedCube) {
     }
     EXPECT_NEAR(volume, 1, 1e-6) << name;
   }
+}
+
+/// A triangle. @param times  attribute of the grid @param array  name of a point array of vectors
+std::string vtu(const std::string& times, const std::string& array) {
+  return R"(<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
+<UnstructuredGrid)" +
+         times + R"(><Piece NumberOfPoints="3" NumberOfCells="1">
+<PointData><DataArray type="Float64" NumberOfComponents="3" format="ascii" Name=")" +
+         array + R"(">0 0 -5 0 0 -5 0 0 -5</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+0 0 0 1 0 0 0 1 0</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">3</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">5</DataArray></Cells>
+</Piece></UnstructuredGrid></VTKFile>
+)";
+}
+
+/// A proof about the points at rest would say nothing of the motion.
+TEST(SurfaceFiles, WithAMotionThatIsNotReadAreRefusedByTheReader) {
+  const ScratchFolder folder;
+  const auto error_of = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return io_error([&] { const SurfaceReader reader(folder / name); });
+  };
+  const std::string at_rest = error_of("a.vtu", vtu("", "velocity"));
+  if (at_rest.find("this build cannot read") != std::string::npos) GTEST_SKIP() << at_rest;
+
+  EXPECT_EQ(at_rest, "");
+  EXPECT_NE(error_of("b.vtu", vtu("", "displacement"))
+                .find("displacement: is not read of this format; move the points by it"),
+            std::string::npos);
+  EXPECT_NE(error_of("c.vtu", vtu(R"( TimeValues="0 1 2")", "velocity")).find("has 3 steps"),
+            std::string::npos);
+  EXPECT_NE(error_of("d.pvd", "<VTKFile/>").find("is no file of a single surface"),
+            std::string::npos);
 }
 
 /// Points are doubled along random edges; joined, the cube has its edges again, and its number of

@@ -232,8 +232,8 @@ double cpu_seconds_of(const JobPlan& plan, const WarpArguments& arguments) {
 /// The name of an output in a folder: that of its volume. A pair .hdr and .img and DICOM images
 /// become one file .nii.gz.
 std::string output_name_of(const std::string& volume) {
-  fs::path path = fs::path(volume).lexically_normal();
-  if (path.filename().empty()) path = path.parent_path();  // of a folder with a slash at its end
+  fs::path path = fs::absolute(volume).lexically_normal();  // a name of "." and ".." also
+  if (path.filename().empty()) path = path.parent_path();   // of a folder with a slash at its end
   std::string name = path.filename().string();
   std::error_code error;
   if (fs::is_directory(volume, error)) return name + ".nii.gz";

@@ -108,7 +108,8 @@ ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& 
     if (inputs.is_null()) inputs = contents_of(facts_of_inputs(arguments));
     const Json now = facts_of_output(output);
     const auto is_as_written = [&](const char* file) {
-      return contents_of({facts.value(file, Json())}) == contents_of({now.value(file, Json())});
+      return contents_of(Json::array({facts.value(file, Json())})) ==
+             contents_of(Json::array({now.value(file, Json())}));
     };
     const bool agrees = facts.value("tetwarp", Json()) == TETWARP_VERSION &&
                         deciding_options(facts.value("options", Json::object())) ==

@@ -10,6 +10,8 @@
 #include <iterator>
 #include <limits>
 
+#include "io/files/xml_text.hpp"
+
 namespace tetwarp::cli {
 namespace {
 constexpr int plot_width = 400, plot_height = 150;  // [pixel], as all lengths below
@@ -46,28 +48,17 @@ struct Range {
   }
 };
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += letter;
-    }
-  }
-  return out;
+/// The significant digits by which ticks differ, at least 6.
+int tick_digits(const std::vector<double>& ticks) {
+  constexpr int least = 6, most = 17;  // a double has no more
+  if (ticks.size() < 2) return least;
+  const double size = std::max(std::abs(ticks.front()), std::abs(ticks.back()));
+  const double digits = std::floor(std::log10(size / (ticks[1] - ticks[0]))) + 2;
+  return static_cast<int>(std::clamp<double>(digits, least, most));
 }
 
 std::string text_at(double x, double y, const std::string& text, const char* more = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", x, y, more, escaped(text));
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", x, y, more, xml_text(text));
 }
 
 std::string line_style(std::size_t index) {
@@ -130,7 +121,7 @@ class Drawing {
     const double y0 = top + static_cast<double>(index) * (plot_height + gap);
     out_ += fmt::format(
         "<text transform=\"translate(14,{:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-        y0 + plot_height / 2.0, escaped(row.title));
+        y0 + plot_height / 2.0, xml_text(row.title));
     for (std::size_t c = 0; c < row.columns.size(); ++c) {
       draw_plot(row.columns[c], chart_.columns[c], {place_of_column(c), y0}, range, c == 0,
                 index + 1 == chart_.rows.size());
@@ -156,23 +147,27 @@ class Drawing {
       const double share = (range.high - y) / (range.high - range.low);
       return corner[1] + margin + (plot_height - 2 * margin) * share;
     };
-    for (const double tick : chart_ticks(range.low, range.high)) {
+    const std::vector<double> y_ticks = chart_ticks(range.low, range.high);
+    for (const double tick : y_ticks) {
       const double y = pixel_of_y(tick);
       out_ += fmt::format(
           "<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{2:.1f}\" y2=\"{1:.1f}\" stroke=\"#ddd\"/>\n",
           corner[0], y, corner[0] + plot_width, y);
       if (has_y) {
-        out_ += text_at(corner[0] - 5, y + 4, fmt::format("{:.6g}", tick), " text-anchor=\"end\"");
+        out_ += text_at(corner[0] - 5, y + 4, fmt::format("{:.{}g}", tick, tick_digits(y_ticks)),
+                        " text-anchor=\"end\"");
       }
     }
-    for (const double tick : chart_ticks(x_.low, x_.high)) {
+    const std::vector<double> x_ticks = chart_ticks(x_.low, x_.high);
+    for (const double tick : x_ticks) {
       const double x = corner[0] + pixel_of_x(tick);
       out_ += fmt::format(
           "<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"#ddd\"/>\n",
           x, corner[1], corner[1] + plot_height);
       if (has_x) {
-        out_ += text_at(x, corner[1] + plot_height + 16, fmt::format("{:.6g}", tick),
-                        " text-anchor=\"middle\"");
+        out_ +=
+            text_at(x, corner[1] + plot_height + 16,
+                    fmt::format("{:.{}g}", tick, tick_digits(x_ticks)), " text-anchor=\"middle\"");
       }
     }
     out_ += fmt::format(
@@ -225,8 +220,9 @@ std::vector<double> chart_ticks(double low, double high) {
     }
   }
   std::vector<double> ticks;
-  const auto last = static_cast<std::int64_t>(std::floor(high / distance * (1 + 1e-12)));
-  for (auto k = static_cast<std::int64_t>(std::ceil(low / distance)); k <= last; ++k) {
+  constexpr double slack = 1e-9;  // [distance], since quotients are rounded
+  const auto last = static_cast<std::int64_t>(std::floor(high / distance + slack));
+  for (auto k = static_cast<std::int64_t>(std::ceil(low / distance - slack)); k <= last; ++k) {
     ticks.push_back(static_cast<double>(k) * distance);
   }
   return ticks;

@@ -60,13 +60,21 @@ std::string unit_of(const std::string& path) {
   return "";
 }
 
-ChartRow read_row(const std::vector<SeriesReader>& readers, const std::string& shown) {
+ChartRow read_row(const std::vector<SeriesReader>& readers,
+                  const std::vector<std::string>& runs,
+                  const std::string& shown) {
   ChartRow row;
   row.title = shown + unit_of(shown);
   const std::vector<std::string> paths = readers.front().paths_of(shown);
-  for (const SeriesReader& reader : readers) {
+  for (std::size_t k = 0; k < readers.size(); ++k) {
+    if (readers[k].paths_of(shown) != paths) {
+      throw IoError(runs[k], shown,
+                    "has other datasets than in " + runs.front() + "; name those that both have");
+    }
     std::vector<Curve> curves;
-    for (const std::string& path : paths) curves.push_back({last_name(path), reader.read(path)});
+    for (const std::string& path : paths) {
+      curves.push_back({last_name(path), readers[k].read(path)});
+    }
     row.columns.push_back(std::move(curves));
   }
   return row;
@@ -103,7 +111,7 @@ int run_plot(const PlotArguments& arguments) {
     chart.columns.push_back(column_of(readers[k], arguments, arguments.runs[k]));
   }
   for (const std::string& shown : arguments.shown) {
-    chart.rows.push_back(read_row(readers, shown));
+    chart.rows.push_back(read_row(readers, arguments.runs, shown));
   }
   write_finished_file(arguments.output, draw_chart(chart));
   if (!arguments.quiet) fmt::print("{}\n", arguments.output);

@@ -64,6 +64,10 @@ void add_warp_command(CLI::App& app, Run& run) {
     if (!arguments->batch.empty() && launched_count() > 1) {
       throw CLI::ValidationError("--batch", "runs without mpirun; start one mpirun for each job");
     }
+    if (arguments->resume && arguments->provenance && launched_count() > 1) {
+      throw CLI::ValidationError("--resume",
+                                 "with --provenance runs without mpirun; leave out one of the two");
+    }
     run = [arguments, command] {
       return arguments->batch.empty() ? run_warp(*arguments, *command)
                                       : run_batch(*arguments, *command);
