@@ -68,7 +68,7 @@ TEST(Plot, DrawsRunsBesideEachOtherOnTheSameAxes) {
   const auto [least, most] = std::minmax_element(energy.begin(), energy.end());
   EXPECT_NEAR(lowest(paths[0]) - highest(paths[0]), 142, 0.11);
   for (std::size_t n = 0; n < energy.size(); ++n) {
-    const double down = 150 * (*most - energy[n]) / (*most - *least);
+    const double down = 142 * (*most - energy[n]) / (*most - *least);
     EXPECT_NEAR(paths[0][n][0] - paths[0][0][0], 400.0 / 12 * static_cast<double>(n), 0.11) << n;
     EXPECT_NEAR(paths[0][n][1] - highest(paths[0]), down, 0.11) << n;
   }
