@@ -122,7 +122,7 @@ void LiveSimulation::loop() {
   while (true) {
     repeat_input();
     const bool steps = may_step();
-    if (!is_told_) tell_listener();
+    if (!is_sent_) tell_listener();
     if (!is_published_ && (!steps || !frames_.is_waiting())) publish();
     for (const Order& order : take_orders(!steps)) follow(order);
     const bool has_steps = may_step();
@@ -283,18 +283,18 @@ void LiveSimulation::wait_for_time() {
   const Clock::time_point now = Clock::now();
   due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(step), now);
   if (due_ == now) return;
-  if (!is_told_) tell_listener();
+  if (!is_sent_) tell_listener();
   if (!is_published_ && !frames_.is_waiting()) publish();
   std::unique_lock lock(mutex_);
   wake_.wait_until(lock, due_, [this] { return is_ending_; });
 }
 
 void LiveSimulation::note_change() {
-  is_published_ = is_told_ = false;
+  is_published_ = is_sent_ = false;
 }
 
 void LiveSimulation::tell_listener() {
-  is_told_ = true;
+  is_sent_ = true;
   if (!listener_) return;
   LiveFrame frame;
   fill(frame);

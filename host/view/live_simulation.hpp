@@ -117,7 +117,7 @@ class LiveSimulation {
   std::int64_t single_steps_ = 0;  ///< to take while paused
   bool is_paused_ = false, has_failed_ = false, warps_ = true;
   bool is_published_ = false;  ///< whether the state is in a frame
-  bool is_told_ = false;       ///< whether the listener knows it
+  bool is_sent_ = false;       ///< whether the listener has got it
   Listener listener_;
   std::optional<Held> held_;
   std::string message_;

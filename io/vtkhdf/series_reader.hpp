@@ -13,7 +13,7 @@ namespace tetwarp {
 /// An open series.h5. The run that writes it may go on; rows that it adds later are not read.
 class TETWARP_IO_EXPORT SeriesReader {
  public:
-  /// Throws IoError when the file is missing, damaged, or no series of a simulation.
+  /// @throws IoError  the file is missing, damaged, or no series of a simulation
   explicit SeriesReader(const std::string& path);
   SeriesReader(SeriesReader&&) noexcept;
   ~SeriesReader();
@@ -22,10 +22,12 @@ class TETWARP_IO_EXPORT SeriesReader {
   std::int64_t first_step() const;
 
   /// The datasets that a name stands for, as paths in the file: of a dataset itself, of a group
-  /// those that lie directly in it, sorted. Throws IoError that lists what there is.
+  /// those that lie directly in it, sorted.
+  /// @throws IoError  there is none; the text lists the names
   std::vector<std::string> paths_of(const std::string& name) const;
 
-  /// One number per row: of vectors their length. Throws IoError.
+  /// One number per step, in the dataset's unit: of vectors their length.
+  /// @throws IoError  the dataset is missing, has other rows than steps, or exceeds the memory
   std::vector<double> read(const std::string& path) const;
 
  private:

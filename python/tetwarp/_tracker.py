@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import array_of, integer_of, number_of, numbers_of, points_of
+from ._arrays import array_of, integer_of, integers_of, number_of, numbers_of, points_of
 from ._contact import ContactProblem, ContactSolution
 
 _MATERIAL = (
@@ -38,9 +38,8 @@ def _column_of(value: Any, name: str, count: int, width: int, dtype: Any) -> np.
         raise ValueError(
             f"{name}: expected {kind} of shape {shape}, got {array.dtype} of {array.shape}"
         )
-    bounds = np.iinfo(np.int32)
-    if dtype is np.int32 and not bounds.min <= array.min() <= array.max() <= bounds.max:
-        raise ValueError(f"{name}: expected numbers below 2^31, found {array.max()}")
+    if dtype is np.int32:
+        return integers_of(array, name).reshape(shape)
     return np.ascontiguousarray(array, dtype=dtype)
 
 

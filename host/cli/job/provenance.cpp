@@ -81,7 +81,7 @@ Json contents_of(Json files) {
   return files;
 }
 
-/// The content of OUT.json; null where there is none, or no JSON object.
+/// The content of OUT.json; null if the file is missing or holds no JSON object.
 Json read_facts(const std::string& file) {
   std::ifstream stream(file);
   const Json facts = Json::parse(stream, nullptr, false);

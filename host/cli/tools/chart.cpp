@@ -18,7 +18,7 @@ constexpr int plot_width = 400, plot_height = 150;  // [pixel], as all lengths b
 constexpr int margin = 4;                           // between the extremes of curves and the frame
 constexpr int left = 84, top = 34, gap = 26, legend_width = 130, foot = 44;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-/// Colors that people who cannot tell red from green can distinguish (Okabe and Ito 2008).
+/// Colors that stay distinct under color blindness (Okabe and Ito 2008).
 constexpr std::array<const char*, 8> colors{"#000000", "#e69f00", "#56b4e9", "#009e73",
                                             "#d55e00", "#0072b2", "#cc79a7", "#999933"};
 

@@ -1,5 +1,5 @@
 /// @file screen_server.cpp
-/// A ROUTER, which knows each screen by an address, and the thread that serves it.
+/// A ROUTER socket, which addresses each screen by its routing id, and the thread that serves it.
 #include "host/view/link/screen_server.hpp"
 
 #include <sys/eventfd.h>
@@ -153,7 +153,8 @@ void ScreenServer::wait_for_work() {
   [[maybe_unused]] const auto taken = read(wake_, &count, sizeof count);
 }
 
-/// ZeroMQ asks whether a peer may connect (ZAP, rfc.zeromq.org/spec/27): by its public key.
+/// Answers requests of ZeroMQ's authentication protocol (ZAP, rfc.zeromq.org/spec/27): a peer may
+/// connect if its public key is that of the screens.
 void ScreenServer::check_peers() {
   if (!keys_.are_given()) return;
   std::uint8_t known[key_bytes]{};

@@ -44,7 +44,7 @@ class ScreenServer {
   void set_state(Bytes state);
   void set_view(const RoomPlace& place, const ScreenLook& look);
 
-  /// Where it listens, with the port that was free if the room asks for port *.
+  /// The address that it listens at; where the room has port *, with the port that was chosen.
   const std::string& address() const { return address_; }
   ScreenCounts counts() const;
 
@@ -71,7 +71,7 @@ class ScreenServer {
   const std::uint64_t session_;
   std::string address_;
   zmq::context_t context_;
-  zmq::socket_t socket_, gate_;  ///< messages; questions of ZeroMQ about who may connect
+  zmq::socket_t socket_, gate_;  ///< of messages; of ZeroMQ's requests to authenticate peers
   int wake_;                     ///< a file that becomes readable
   Stopwatch clock_;
 

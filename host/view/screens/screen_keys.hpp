@@ -1,5 +1,5 @@
 /// @file screen_keys.hpp
-/// ScreenKeys: who may join a room, as files of key pairs.
+/// ScreenKeys: key pairs that authenticate master and screens, and their files.
 #pragma once
 #include <string>
 

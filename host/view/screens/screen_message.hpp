@@ -62,7 +62,7 @@ struct SwapMessage {
 };
 /// The master ends.
 struct EndMessage {};
-/// The master does not know the process: it is to join.
+/// The master has no screen at this address: the process must send a JoinMessage.
 struct WhoMessage {};
 using ToScreen =
     std::variant<WelcomeMessage, RefuseMessage, FrameMessage, SwapMessage, EndMessage, WhoMessage>;

@@ -10,8 +10,8 @@ namespace tetwarp::view {
 
 /// The bookkeeping of the swap barrier, without clock and sockets. Members are known by the address
 /// of their process; times are seconds that do not fall. A frame goes to all members that are not
-/// busy. They show it together: when all have drawn it, or when `wait` is over; who is late shows
-/// it when it is ready, and gets the newest frame then.
+/// busy. They show it together: when all have drawn it, or when `wait` is over; a late member
+/// shows it when it is ready, and gets the newest frame then.
 class SwapGroup {
  public:
   using Member = std::string;
