@@ -47,13 +47,14 @@ template <class Stream, class Value>
 requires std::same_as<std::remove_const_t<Value>, FrameMessage>
 void exchange_members(Stream& stream, Value& message) {
   auto& [session, frame, head, eye_separation, place, look, state] = message;
-  auto& [volumes, shows_contacts, level, width, cut] = look;
+  auto& [volumes, shows_contacts, level, width, cut, curve] = look;
   stream(session, frame, head, eye_separation, place, volumes, shows_contacts, level, width, cut,
-         state);
+         curve, state);
 }
 
 namespace {
 constexpr std::array<char, 4> own_letters{'t', 'w', 's', '2'};
+constexpr std::size_t most_curve_points = 64;
 
 void check_head(const HeadPose& head) {
   double size = 0;
@@ -80,6 +81,19 @@ void check_message(const WelcomeMessage& message) {
   }
 }
 
+/// Samples and colors are shares, and samples do not fall.
+void check_curve(const std::vector<ColorPoint>& curve) {
+  require(curve.empty() || (curve.size() >= 2 && curve.size() <= most_curve_points), "no curve");
+  double before = 0;
+  for (const auto& [sample, color, opacity] : curve) {
+    for (const double share : {sample, color[0], color[1], color[2], opacity}) {
+      require(share >= 0 && share <= 1, "no point of a curve");
+    }
+    require(sample >= before, "points of a curve without order");
+    before = sample;
+  }
+}
+
 void check_message(const FrameMessage& message) {
   check_head(message.head);
   const RoomPlace& place = message.place;
@@ -90,6 +104,7 @@ void check_message(const FrameMessage& message) {
   require(message.eye_separation >= 0 && message.eye_separation <= 1 && look.volumes <= 2 &&
               std::abs(look.level) < 1e6 && look.width > 1e-6 && look.width < 1e6,
           "no look");
+  check_curve(look.curve);
   require(
       !look.cut || (is_in_world(look.cut->point) && std::abs(norm(look.cut->normal) - 1) < 1e-6),
       "no cut");
