@@ -40,8 +40,8 @@ class Gamepad : public InputDevice {
     SDL_GameControllerUpdate();
     if (SDL_GameControllerGetAttached(pad_) == SDL_FALSE) return std::nullopt;
     DeviceSpan span;
-    const double lifts = button(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER) -
-                         button(SDL_CONTROLLER_BUTTON_LEFTSHOULDER);
+    const double lifts =
+        button(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER) - button(SDL_CONTROLLER_BUTTON_LEFTSHOULDER);
     span.state.move = {axis(SDL_CONTROLLER_AXIS_LEFTX), lifts, axis(SDL_CONTROLLER_AXIS_LEFTY)};
     span.state.turn = {
         axis(SDL_CONTROLLER_AXIS_RIGHTY), axis(SDL_CONTROLLER_AXIS_RIGHTX),
@@ -53,9 +53,7 @@ class Gamepad : public InputDevice {
   }
 
  private:
-  double button(SDL_GameControllerButton of) const {
-    return SDL_GameControllerGetButton(pad_, of);
-  }
+  double button(SDL_GameControllerButton of) const { return SDL_GameControllerGetButton(pad_, of); }
   /// -1 to 1, and 0 where a stick rests.
   double axis(SDL_GameControllerAxis of) const {
     const double value = std::max(SDL_GameControllerGetAxis(pad_, of) / 32767.0, -1.0);

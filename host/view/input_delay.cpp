@@ -20,9 +20,9 @@ void InputDelay::drawn(const std::optional<InputTime>& input) {
 std::string InputDelay::text() const {
   if (count_ == 0) return {};
   char line[120];
-  std::snprintf(line, sizeof line, "input to picture: %lld pulls, %.0f ms in the mean, %.0f at most",
-                static_cast<long long>(count_), 1000 * sum_ / static_cast<double>(count_),
-                1000 * most_);
+  std::snprintf(
+      line, sizeof line, "input to picture: %lld pulls, %.0f ms in the mean, %.0f at most",
+      static_cast<long long>(count_), 1000 * sum_ / static_cast<double>(count_), 1000 * most_);
   return line;
 }
 

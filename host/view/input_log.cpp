@@ -66,7 +66,8 @@ InputEvent event_of(LineReader& line, std::int64_t tick, const std::string& word
   std::size_t kind = 0;
   while (kind < std::size(words) && word != words[kind]) ++kind;
   if (kind == std::size(words)) {
-    throw std::invalid_argument("'" + word + "' is not grab, move, release, restart, carry, limit or end");
+    throw std::invalid_argument("'" + word +
+                                "' is not grab, move, release, restart, carry, limit or end");
   }
   event.kind = static_cast<InputKind>(kind);
   if (event.kind == InputKind::grab) {

@@ -31,12 +31,14 @@ bool read_span(const std::string& line, DeviceSpan& span) {
 
 SimulatedDevice::SimulatedDevice(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw IoError(path, "", "cannot be opened; --devices takes gamepad, spacemouse or a file");
+  if (!file)
+    throw IoError(path, "", "cannot be opened; --devices takes gamepad, spacemouse or a file");
   std::string line;
   for (int n = 1; std::getline(file, line); ++n) {
     if (!read_span(line, spans_.emplace_back())) {
-      throw IoError(path, "", "line " + std::to_string(n) +
-                                  " is not: seconds, move x y z, turn x y z (-1 to 1), grabs 0 or 1");
+      throw IoError(path, "",
+                    "line " + std::to_string(n) +
+                        " is not: seconds, move x y z, turn x y z (-1 to 1), grabs 0 or 1");
     }
   }
 }

@@ -93,7 +93,8 @@ std::vector<std::vector<float>> SurfaceValues::stresses() {
   const bool is_first = bindings_.empty();
   for (std::size_t b = 0; b < bodies; ++b) {
     const BodyMesh& body = simulator_.body(b);
-    if (is_first) bindings_.push_back(body.mesh.tets.empty() ? BoundPoints{} : surface_binding(body));
+    if (is_first)
+      bindings_.push_back(body.mesh.tets.empty() ? BoundPoints{} : surface_binding(body));
     if (body.mesh.tets.empty()) {
       values[b].assign(body.surface.points.size(), no_value);
     } else {

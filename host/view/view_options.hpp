@@ -19,19 +19,19 @@ struct ViewOptions {
   double max_step_seconds = std::numeric_limits<double>::infinity();
   bool untangle = false;
   bool paused = false;
-  bool fast = false;                                   ///< no waiting for the time of the scene
-  std::optional<std::int64_t> steps;                   ///< then the window closes
-  std::int64_t width = 960, height = 640;              ///< [pixel]
-  std::optional<std::array<double, 6>> camera;         ///< eye, target
-  std::string preset = "ct";                           ///< colors of volumes: ct or mr
-  std::string colors = "none";                         ///< of surfaces: stress, gap, adhesion
-  std::int64_t voxels = 2'000'000;                     ///< at most, of all warped volumes
-  std::optional<double> grab_radius;                   ///< [m]
-  std::optional<double> grab_stiffness;                ///< [N/m]
-  std::optional<std::array<double, 4>> ball;           ///< center and radius of a ball to push with
+  bool fast = false;                            ///< no waiting for the time of the scene
+  std::optional<std::int64_t> steps;            ///< then the window closes
+  std::int64_t width = 960, height = 640;       ///< [pixel]
+  std::optional<std::array<double, 6>> camera;  ///< eye, target
+  std::string preset = "ct";                    ///< colors of volumes: ct or mr
+  std::string colors = "none";                  ///< of surfaces: stress, gap, adhesion
+  std::int64_t voxels = 2'000'000;              ///< at most, of all warped volumes
+  std::optional<double> grab_radius;            ///< [m]
+  std::optional<double> grab_stiffness;         ///< [N/m]
+  std::optional<std::array<double, 4>> ball;    ///< center and radius of a ball to push with
   /// Centers of the outer and the inner finger, and their radius.
   std::optional<std::array<double, 7>> fingers;
-  double skin_stiffness = 500;                         ///< between the fingers [N/m]
+  double skin_stiffness = 500;                                        ///< between the fingers [N/m]
   std::string screenshot, film, record, replay, checkpoint, restart;  ///< files; empty: none
   std::string screens;            ///< room file or name of one that ships; empty: none
   std::string address;            ///< that a master listens at, in place of the room's

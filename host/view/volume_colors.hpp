@@ -27,7 +27,8 @@ class VolumeColors {
 
   /// The curve with samples as shares: 0 is the first, 1 the last.
   std::vector<ColorPoint> curve() const;
-  /// Another curve between the same ends. @param curve  as curve() gives it, with two points or more
+  /// Another curve between the same ends. @param curve  as curve() gives it, with two points or
+  /// more
   void set_curve(const std::vector<ColorPoint>& curve);
 
   /// @param level  by how much the curve moves, in its widths

@@ -44,10 +44,12 @@ std::string find_viewer() {
 /// Replaces this process.
 int run_view(const view::ViewOptions& options) {
   std::vector<std::string> inputs;
-  for (const std::string& file : {options.scene_file, options.replay, options.restart, options.key}) {
+  for (const std::string& file :
+       {options.scene_file, options.replay, options.restart, options.key}) {
     if (!file.empty()) inputs.push_back(file);
   }
-  for (const std::string& file : {options.screenshot, options.film, options.record, options.checkpoint}) {
+  for (const std::string& file :
+       {options.screenshot, options.film, options.record, options.checkpoint}) {
     if (!file.empty()) check_output_file(file, inputs);
   }
   std::vector<std::string> words = view::words_of(options);

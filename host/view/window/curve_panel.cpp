@@ -56,8 +56,7 @@ std::array<double, 2> CurvePanel::share_of(int x, int y) const {
 
 void CurvePanel::update() {
   const bool is_shown = is_shown_ && editor_;
-  for (vtkActor2D* const actor :
-       {frame_actor_.Get(), line_actor_.Get(), points_actor_.Get()}) {
+  for (vtkActor2D* const actor : {frame_actor_.Get(), line_actor_.Get(), points_actor_.Get()}) {
     actor->SetVisibility(is_shown);
   }
   if (!is_shown) return;
@@ -89,8 +88,8 @@ void CurvePanel::update() {
 
 bool CurvePanel::press(int x, int y, bool tints) {
   const auto [share_x, share_y] = share_of(x, y);
-  const bool is_on = is_shown_ && editor_ && share_x > -0.05 && share_x < 1.05 && share_y > -0.1 &&
-                     share_y < 1.1;
+  const bool is_on =
+      is_shown_ && editor_ && share_x > -0.05 && share_x < 1.05 && share_y > -0.1 && share_y < 1.1;
   held_ = is_on ? editor_->hit(share_x, share_y) : std::nullopt;
   tints_ = tints;
   last_ = {x, y};

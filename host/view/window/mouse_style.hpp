@@ -21,9 +21,9 @@ struct MouseActions {
   std::function<void(const std::string& key)> press;  ///< name of X11
 };
 
-/// Left drags what is under the pointer, a point of a curve too, or turns the camera; right drags the window of volumes, or
-/// zooms. Everything else is that of VTK's trackball: Shift and left or middle pan, Ctrl and left
-/// spins, the wheel zooms. Keys of VTK do nothing.
+/// Left drags what is under the pointer, a point of a curve too, or turns the camera; right drags
+/// the window of volumes, or zooms. Everything else is that of VTK's trackball: Shift and left or
+/// middle pan, Ctrl and left spins, the wheel zooms. Keys of VTK do nothing.
 class MouseStyle : public vtkInteractorStyleTrackballCamera {
  public:
   static MouseStyle* New();

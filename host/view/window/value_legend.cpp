@@ -22,8 +22,7 @@ ValueLegend::ValueLegend(vtkRenderer* renderer) {
   bar_->SetWidth(0.12);
   bar_->SetHeight(0.5);
   bar_->UnconstrainedFontSizeOn();
-  for (vtkTextProperty* const text :
-       {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
+  for (vtkTextProperty* const text : {bar_->GetTitleTextProperty(), bar_->GetLabelTextProperty()}) {
     text->SetFontSize(13);
     text->SetFontFamilyToCourier();
     text->SetColor(0.1, 0.1, 0.15);

@@ -73,7 +73,8 @@ TEST(StepBudget, IsRememberedByACheckpoint) {
   EXPECT_FALSE(other.record().out_of_time);
 }
 
-/// Steps that end by the clock in the middle of solves and divisions, whatever time these take here.
+/// Steps that end by the clock in the middle of solves and divisions, whatever time these take
+/// here.
 TEST(StepBudget, IsRepeatedByItsCountsBitForBit) {
   Scene scene = clash();
   scene.solver.contact_tolerance = 1e-9;  // more to end
