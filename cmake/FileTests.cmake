@@ -187,6 +187,7 @@ if(TETWARP_HAS_PYTHON)
   add_test(NAME python COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/python/tests/run.py)
   set_tests_properties(python PROPERTIES LABELS python SKIP_RETURN_CODE 77 TIMEOUT 300
     ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;PYTHONDONTWRITEBYTECODE=1;TETWARP_COMMAND=$<TARGET_FILE:tetwarp_command>")
+  include(cmake/EmulatedPython.cmake)
 else()
   add_test(NAME python COMMAND ${CMAKE_COMMAND} -E echo
     "skipped: the Python package was not built: there is no ${tetwarp_python_missing}")
