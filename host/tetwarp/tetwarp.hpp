@@ -12,6 +12,7 @@
 #include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/make.hpp>
+#include <tetwarp/loft.hpp>
 #include <tetwarp/map_points.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/names.hpp>
