@@ -73,7 +73,7 @@ tetwarp_sources(tetwarp host/simulate/run
   added_handles.cpp body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
   fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
   simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
-  step_records.cpp tet_energies.cpp)
+  step_records.cpp tet_energies.cpp turning_moments.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
   contact_shares.cpp contact_system.cpp deformable_solver.cpp general_solver.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem
