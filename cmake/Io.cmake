@@ -36,7 +36,7 @@ tetwarp_sources(tetwarp_io io/points
   foreign_points.cpp markup_points.cpp point_file.cpp text_points.cpp vtkhdf_points.cpp)
 tetwarp_sources(tetwarp_io io/scene
   scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_files.cpp
-  scene_geometry.cpp scene_json.cpp scene_motion.cpp)
+  scene_geometry.cpp scene_json.cpp scene_loft.cpp scene_motion.cpp)
 tetwarp_sources(tetwarp_io io/transforms
   field_file.cpp fsl_field.cpp itk_transform.cpp itk_transform_files.cpp transform_file.cpp)
 tetwarp_sources(tetwarp_io io/volume

@@ -5,6 +5,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/scene/test_image_lattice.cpp
     tests/scene/test_voxel_shares.cpp
     tests/scene/test_isosurface.cpp
+    tests/scene/test_loft.cpp
     tests/scene/test_scene_geometry.cpp
     tests/scene/test_shape.cpp
     tests/scene/test_shape_lattice.cpp

@@ -11,6 +11,7 @@
 #include <tetwarp/contact_problem.hpp>
 #include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>
+#include <tetwarp/loft.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/map_points.hpp>
 #include <tetwarp/mesh.hpp>

@@ -9,41 +9,47 @@
 
 #include "io/files/memory.hpp"
 #include "io/scene/scene_files.hpp"
+#include "io/scene/scene_loft.hpp"
 
 namespace tetwarp {
 namespace {
-/// A shape by the word `type` and the keys beside it.
-Shape read_shape(const SceneValue& value) {
-  SceneObject object(value);
-  const SceneValue type = object.get("type", "e.g. \"box\"");
+/// A shape by its type and the keys beside it.
+Shape shape_of_type(const SceneValue& type, SceneObject& object) {
+  const std::string word = type.text();
   const auto length = [&](const char* key) { return object.get(key, "a length in m").number(); };
   const auto lengths = [&](const char* key) {
     return object.get(key, "three lengths [x, y, z] in m").point();
   };
-  const auto shape_of = [&](const std::string& word) -> Shape {
-    if (word == "box") return BoxShape{lengths("half")};
-    if (word == "ellipsoid") return EllipsoidShape{lengths("radii")};
-    if (word == "plate") return PlateShape{lengths("size")};
-    if (word == "capsule") return CapsuleShape{length("radius"), length("length")};
-    if (word == "cylinder") return CylinderShape{length("radius"), length("length")};
-    if (word == "torus") return TorusShape{length("radius"), length("tube")};
-    if (word == "sphere") {
-      const double radius = length("radius");
-      return EllipsoidShape{{radius, radius, radius}};
-    }
-    if (word == "arc") {
-      return ArcShape{length("radius"), length("tube"),
-                      object.get("angles", "[first, second] in rad").array<2>()};
-    }
-    if (word == "bent_strip") {
-      return BentStripShape{length("width"), length("height"), length("depth"), length("sag")};
-    }
-    type.fail_word("is no shape", {"box", "sphere", "ellipsoid", "capsule", "cylinder", "torus",
-                                   "arc", "bent_strip", "plate"});
-  };
-  const Shape shape = shape_of(type.text());
+  if (word == "box") return BoxShape{lengths("half")};
+  if (word == "ellipsoid") return EllipsoidShape{lengths("radii")};
+  if (word == "plate") return PlateShape{lengths("size")};
+  if (word == "capsule") return CapsuleShape{length("radius"), length("length")};
+  if (word == "cylinder") return CylinderShape{length("radius"), length("length")};
+  if (word == "torus") return TorusShape{length("radius"), length("tube")};
+  if (word == "sphere") {
+    const double radius = length("radius");
+    return EllipsoidShape{{radius, radius, radius}};
+  }
+  if (word == "arc") {
+    return ArcShape{length("radius"), length("tube"),
+                    object.get("angles", "[first, second] in rad").array<2>()};
+  }
+  if (word == "bent_strip") {
+    return BentStripShape{length("width"), length("height"), length("depth"), length("sag")};
+  }
+  type.fail_word("is no shape", {"box", "sphere", "ellipsoid", "capsule", "cylinder", "torus",
+                                 "arc", "bent_strip", "plate", "loft"});
+}
+
+void read_shape(const SceneValue& value, SceneFiles& files, Body& into) {
+  SceneObject object(value);
+  const SceneValue type = object.get("type", "e.g. \"box\"");
+  if (type.text() == "loft") {
+    read_loft(value, object, files, into);
+  } else {
+    into.geometry = shape_of_type(type, object);
+  }
   object.finish();
-  return shape;
 }
 
 // ---- volumes ------------------------------------------------------------------
@@ -182,7 +188,7 @@ Sheet read_sheet(const SceneValue& value) {
 void read_geometry(SceneObject& object, SceneFiles& files, Body& into) {
   int count = 0;
   if (const auto shape = object.find("shape")) {
-    into.geometry = read_shape(*shape);
+    read_shape(*shape, files, into);
     ++count;
   }
   if (const auto volume = object.find("volume")) {

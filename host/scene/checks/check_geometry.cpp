@@ -121,6 +121,7 @@ void check_one(const std::string& body_place, const Sheet& sheet) {
   }
   if (std::abs(dot) > 1e-6) fail_at(axes, "are not at right angles, correct one of them");
 }
+}  // namespace
 
 void check_lattice(const std::string& place, const Lattice& lattice) {
   if (lattice.cells.has_value() + lattice.edge.has_value() + lattice.tets.has_value() != 1) {
@@ -141,7 +142,6 @@ void check_lattice(const std::string& place, const Lattice& lattice) {
     fail_at(key_of(place, "cells"), "2^31 or more tetrahedra; use fewer cells");
   }
 }
-}  // namespace
 
 void check_surface(const std::string& place, const Surface& surface) {
   if (surface.triangles.empty()) fail_at(place, "holds no triangle");
