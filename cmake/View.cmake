@@ -2,8 +2,8 @@
 # left out where this is missing. `tetwarp view` then names the package.
 add_library(tetwarp_view_parts STATIC)
 tetwarp_sources(tetwarp_view_parts host/view
-  body_carrier.cpp input_log.cpp live_simulation.cpp live_volumes.cpp obstacle_surface.cpp pick.cpp
-  ray_quality.cpp scene_look.cpp view_options.cpp view_scene.cpp volume_colors.cpp)
+  body_carrier.cpp input_log.cpp live_simulation.cpp live_volumes.cpp look_surfaces.cpp obstacle_surface.cpp
+  pick.cpp ray_quality.cpp scene_look.cpp view_options.cpp view_scene.cpp volume_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/screens
   off_axis.cpp room.cpp room_file.cpp scene_sharer.cpp screen_keys.cpp screen_message.cpp
   shared_scene.cpp shared_state.cpp swap_group.cpp)

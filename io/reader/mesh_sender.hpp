@@ -8,6 +8,7 @@
 #include <tetwarp/mesh_import.hpp>
 
 #include "io/child/foreign_image.hpp"
+#include "io/reader/mesh_readers.hpp"
 
 namespace tetwarp {
 
@@ -19,6 +20,8 @@ struct ReaderCalls {
   std::function<void(
       const std::string& path, const std::string& numbers, const std::string& output)>
       place = {};
+  /// Gives a surface of fewer triangles, see coarse_surface().
+  std::function<CoarseMesh(const std::string& path, double distance)> coarsen = {};
   /// As of image_readers.hpp.
   std::function<ForeignImage(const std::string& path, const std::string& series)> image = {};
   std::function<void(const std::string& path,
@@ -31,9 +34,9 @@ struct ReaderCalls {
 
 /// Does what the arguments tell, and sends the result to the standard output, where nothing else
 /// arrives: PATH MEMORY solids|triangles [DISPLACEMENT], PATH MEMORY points,
-/// PATH MEMORY place NUMBERS OUTPUT, PATH MEMORY image SERIES, or PATH MEMORY samples ARRAY SERIES,
-/// as the functions of mesh_child.hpp and foreign_image.hpp give them. Limits the
-/// memory, leaves no core file, and is killed with the thread that started it.
+/// PATH MEMORY place NUMBERS OUTPUT, PATH MEMORY coarsen DISTANCE, PATH MEMORY image SERIES, or
+/// PATH MEMORY samples ARRAY SERIES, as the functions of mesh_child.hpp and foreign_image.hpp give
+/// them. Limits the memory, leaves no core file, and is killed with the thread that started it.
 /// @returns the exit code
 int send_result(int argc, char** argv, const ReaderCalls& calls);
 
