@@ -121,6 +121,17 @@ def bond_row(columns, report, seconds):
     return row
 
 
+def warp_row(columns, report, seconds):
+    """Frames of all volumes a second of processor time, with the steps between them."""
+    row = step_row(columns, report, seconds)
+    timings = report["timings"]
+    parts = sum(timings[part] for part in ("read", "setup", "step", "write", "warp", "draw"))
+    busy = seconds * (timings["step"] + timings["warp"]) / parts
+    row.update(frames=report["frames"], warp_ms=1e3 * seconds * timings["warp"] / parts / report["frames"],
+               frames_a_second=report["frames"] / busy)
+    return row
+
+
 def roll_row(columns, report, seconds):
     """Acceleration down the slope over that of a solid ball, from the second half of the run."""
     row = step_row(columns, report, seconds)
@@ -144,6 +155,9 @@ def cases(tool):
     candy["duration"] = 4
     yield "scene/candy", candy, [], bond_row
     yield "scene/candy without adhesion", candy, FREE, bond_row
+    for name, steps in (("torso", 100), ("oranges", 50), ("carps", 10)):
+        options = ["--warp", "--intensity", "density", "--outputs", "mask", "--steps", str(steps)]
+        yield f"volumes/{name}", json.loads(text[name]), options, warp_row
     for factor in (0.5, 1, 2):
         for name in ("cloth", "mouth"):
             yield f"finer/{name} x {factor}", refined(json.loads(text[name]), factor), [], bond_row
@@ -164,6 +178,10 @@ def print_tables(rows):
             print(f"| {name[6:]} | {row['steps']} | {row['tetrahedra']} | {row['triangles']} | {mean:.0f}, {most} "
                   f"| {PAPER.get(name[6:], '')} | {row['ms']:.2g} | {shares} | {energy} "
                   f"| {row['passes'][0]:.1f}, {row['passes'][1]} | {row['clamped']}, {row['unconverged']} |")
+    print("\n| volumes | frames | a step [ms] | warps of a frame [ms] | frames a second |\n|---|---|---|---|---|")
+    for name, row in rows.items():
+        if name.startswith("volumes/"):
+            print(f"| {name[8:]} | {row['frames']} | {row['ms']:.2g} | {row['warp_ms']:.3g} | {row['frames_a_second']:.2g} |")
     print("\n| | triangles | contacts, mean and most | first contact [s] | last bond [s] | bonded at most [cm^2] | work [mJ] | ms |")
     print("|---" * 8 + "|")
     for name, row in rows.items():
@@ -171,7 +189,7 @@ def print_tables(rows):
             mean, most = row["contacts"]
             last = "" if row["last_bond"] is None else f"{row['last_bond']:.3f}"
             print(f"| {name[6:]} | {row['triangles']} | {mean:.0f}, {most} | {row['first_contact']:.3f} | {last} "
-                  f"| {row['bonded_cm2']:.3g} | {1e3 * row['work']:.3g} | {row['ms']:.2g} |")
+                  f"| {row['bonded_cm2']:.4g} | {1e3 * row['work']:.3g} | {row['ms']:.2g} |")
     print("\n| time step, points | acceleration / (5/7 g sin) | steps with stopped groups | ms |\n|---|---|---|---|")
     for name, row in rows.items():
         if name.startswith("roll/"):

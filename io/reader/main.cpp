@@ -13,5 +13,5 @@ int main(int argc, char** argv) {
   std::_Exit(tetwarp::send_result(
       argc, argv,
       {tetwarp::read_foreign_mesh, tetwarp::read_vtk_points, tetwarp::place_vtk_points,
-       tetwarp::coarsen_by_vtk, tetwarp::read_foreign_image, tetwarp::read_foreign_samples}));
+       tetwarp::read_foreign_image, tetwarp::read_foreign_samples, tetwarp::coarsen_by_vtk}));
 }

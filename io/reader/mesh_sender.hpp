@@ -20,8 +20,6 @@ struct ReaderCalls {
   std::function<void(
       const std::string& path, const std::string& numbers, const std::string& output)>
       place = {};
-  /// Gives a surface of fewer triangles, see coarse_surface().
-  std::function<CoarseMesh(const std::string& path, double distance)> coarsen = {};
   /// As of image_readers.hpp.
   std::function<ForeignImage(const std::string& path, const std::string& series)> image = {};
   std::function<void(const std::string& path,
@@ -30,6 +28,8 @@ struct ReaderCalls {
                      const TakeImage& take_image,
                      const TakeSlice& take)>
       samples = {};
+  /// Gives a surface of fewer triangles, see coarse_surface().
+  std::function<CoarseMesh(const std::string& path, double distance)> coarsen = {};
 };
 
 /// Does what the arguments tell, and sends the result to the standard output, where nothing else
