@@ -38,9 +38,9 @@ tetwarp_sources(tetwarp host/contact/sweeps
 tetwarp_sources(tetwarp host/contact/tracker
   input_checks.cpp match.cpp record_update.cpp tracker.cpp)
 tetwarp_sources(tetwarp host/make
-  deform_mesh.cpp lattice_mesh.cpp phantom.cpp phantom_fish.cpp phantom_orange.cpp
-  phantom_organs.cpp phantom_torso.cpp picture_view.cpp render_surfaces.cpp render_volume.cpp
-  surface_soup.cpp)
+  clear_blocks.cpp deform_mesh.cpp lattice_mesh.cpp phantom.cpp phantom_fish.cpp
+  phantom_orange.cpp phantom_organs.cpp phantom_torso.cpp picture_view.cpp render_surfaces.cpp
+  render_volume.cpp surface_picture.cpp surface_soup.cpp transfer.cpp volume_rays.cpp)
 tetwarp_sources(tetwarp host/reference/contact
   bilateral.cpp contact.cpp dense.cpp enumerate.cpp feasible.cpp gauss_seidel.cpp least_norm.cpp
   local.cpp)
@@ -55,8 +55,8 @@ tetwarp_sources(tetwarp host/reference/warp
 tetwarp_sources(tetwarp host/scene
   alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp
   lattice_search.cpp loft.cpp loft_line.cpp marching_tets.cpp ring_surface.cpp rings.cpp
-  scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp
-  voxel_owner.cpp voxel_shares.cpp)
+  scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp shape_lattice.cpp shape_surface.cpp
+  sheet.cpp surface.cpp surface_lattice.cpp surface_solid.cpp voxel_owner.cpp voxel_shares.cpp)
 tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
 tetwarp_sources(tetwarp host/simulate/contact_step

@@ -153,7 +153,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp.cpp
     tests/warp/test_warp_arguments.cpp
     tests/warp/test_warp_filters.cpp
-    tests/warp/test_warp_invariance.cpp)
+    tests/warp/test_warp_invariance.cpp
+    tests/make/test_cast_volumes.cpp)
   target_link_libraries(tetwarp_tests PRIVATE tetwarp_hwy)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)

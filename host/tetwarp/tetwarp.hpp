@@ -4,6 +4,7 @@
 #include <tetwarp/backend.hpp>
 #include <tetwarp/blocks.hpp>
 #include <tetwarp/camera.hpp>
+#include <tetwarp/cast.hpp>
 #include <tetwarp/certify.hpp>
 #include <tetwarp/choices.hpp>
 #include <tetwarp/contact.hpp>

@@ -37,7 +37,7 @@ std::optional<std::size_t> CurveEditor::hit(double x, double y) const {
   std::optional<std::size_t> nearest;
   double least = reach;
   for (std::size_t n = 0; n < curve_.size(); ++n) {
-    const double distance = std::hypot(curve_[n].sample - x, curve_[n].opacity - y);
+    const double distance = std::hypot(curve_[n].value - x, curve_[n].opacity - y);
     if (distance > least) continue;
     least = distance;
     nearest = n;
@@ -48,7 +48,7 @@ std::optional<std::size_t> CurveEditor::hit(double x, double y) const {
 void CurveEditor::drag(std::size_t point, double x, double y) {
   curve_[point].opacity = std::clamp(y, 0.0, 1.0);
   if (point == 0 || point + 1 == curve_.size()) return;
-  curve_[point].sample = std::clamp(x, curve_[point - 1].sample, curve_[point + 1].sample);
+  curve_[point].value = std::clamp(x, curve_[point - 1].value, curve_[point + 1].value);
 }
 
 void CurveEditor::tint(std::size_t point, double hue, double saturation) {

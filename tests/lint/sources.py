@@ -54,7 +54,7 @@ DECLARED_IN = {
         "io/reader/dicom_gdcm.cpp", "io/reader/dicom_nogdcm.cpp", "io/reader/image_vtk.cpp"],
     "io/reader/mesh_readers.hpp": [
         "io/reader/mesh_gmsh.cpp", "io/reader/mesh_nogmsh.cpp", "io/reader/mesh_novtk.cpp",
-        "io/reader/mesh_vtk.cpp", "io/reader/surface_vtk.cpp"],
+        "io/reader/coarsen_vtk.cpp", "io/reader/mesh_vtk.cpp", "io/reader/surface_vtk.cpp"],
     # Kernels include nothing of the host.
     "kernels/base/host_tasks.hpp": ["host/base/host_tasks.cpp"],
     # Compiling CUB takes long: only this file includes it.

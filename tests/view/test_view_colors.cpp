@@ -115,15 +115,15 @@ std::vector<ColorPoint> some_curve() {
 TEST(VolumeColors, TakeTheCurveThatTheyGive) {
   VolumeColors colors("ct", -800, 1500);
   const std::vector<ColorPoint> curve = colors.curve(), points = colors.points();
-  EXPECT_EQ(curve.front().sample, 0);
-  EXPECT_EQ(curve.back().sample, 1);
+  EXPECT_EQ(curve.front().value, 0);
+  EXPECT_EQ(curve.back().value, 1);
   VolumeColors other("mr", 0, 1);  // with fewer points
   other.set_curve(curve);
-  EXPECT_EQ(other.points().back().sample, largest_sample);
+  EXPECT_EQ(other.points().back().value, largest_sample);
   EXPECT_EQ(other.points().size(), curve.size());
   colors.set_curve(curve);
   for (std::size_t n = 0; n < points.size(); ++n) {
-    EXPECT_NEAR(colors.points()[n].sample, points[n].sample, 1e-9);
+    EXPECT_NEAR(colors.points()[n].value, points[n].value, 1e-9);
     EXPECT_EQ(colors.points()[n].color, points[n].color);
   }
 }
@@ -139,9 +139,9 @@ TEST(CurveEditor, KeepsTheOrderOfItsPoints) {
     editor.drag(point, x, y);
     editor.tint(point, any(random), any(random));
     EXPECT_EQ(editor.curve()[point].opacity, std::clamp(y, 0.0, 1.0));
-    EXPECT_EQ(editor.curve().front().sample, 0);
-    EXPECT_EQ(editor.curve().back().sample, 1);
-    EXPECT_TRUE(std::ranges::is_sorted(editor.curve(), {}, &ColorPoint::sample));
+    EXPECT_EQ(editor.curve().front().value, 0);
+    EXPECT_EQ(editor.curve().back().value, 1);
+    EXPECT_TRUE(std::ranges::is_sorted(editor.curve(), {}, &ColorPoint::value));
     for (const double part : editor.curve()[point].color) {
       EXPECT_GE(part, 0);
       EXPECT_LE(part, 1);
@@ -153,7 +153,7 @@ TEST(CurveEditor, FindsThePointUnderThePointer) {
   const CurveEditor editor(some_curve());
   for (std::size_t n = 0; n < editor.curve().size(); ++n) {
     const ColorPoint& point = editor.curve()[n];
-    const auto found = editor.hit(point.sample + 0.005, point.opacity);
+    const auto found = editor.hit(point.value + 0.005, point.opacity);
     ASSERT_TRUE(found);
     EXPECT_EQ(*found, n);
   }

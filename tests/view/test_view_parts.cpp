@@ -214,8 +214,8 @@ TEST(SceneLook, CameraIsUprightUnlessItLooksDown) {
 TEST(VolumeColors, FollowHounsfieldUnitsAndTheWindow) {
   VolumeColors tomography("ct", -1000, 1000);
   const auto value = [](double sample) { return -1000 + 2000 * sample / largest_sample; };
-  EXPECT_NEAR(value(tomography.points().front().sample), -1000, 1e-9);
-  EXPECT_NEAR(value(tomography.points().back().sample), 1000, 1e-9);
+  EXPECT_NEAR(value(tomography.points().front().value), -1000, 1e-9);
+  EXPECT_NEAR(value(tomography.points().back().value), 1000, 1e-9);
   EXPECT_EQ(tomography.points().front().opacity, 0);
   tomography.set_window(0.25, 0.5);
   EXPECT_NEAR(value(tomography.gray()[0]), 0, 1e-9);

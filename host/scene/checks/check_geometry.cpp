@@ -169,8 +169,10 @@ void check_geometry(const std::string& place, const Body& body) {
   std::visit([&](const auto& geometry) { check_one(place, geometry); }, body.geometry);
   if (body.lattice) {
     if (!std::holds_alternative<Shape>(body.geometry) &&
-        !std::holds_alternative<ImageGeometry>(body.geometry)) {
-      fail_at(key_of(place, "lattice"), "is only for bodies of a shape or volume, remove it");
+        !std::holds_alternative<ImageGeometry>(body.geometry) &&
+        !std::holds_alternative<Surface>(body.geometry)) {
+      fail_at(key_of(place, "lattice"),
+              "is only for bodies of a shape, a volume or a closed surface, remove it");
     }
     check_lattice(key_of(place, "lattice"), *body.lattice);
   }

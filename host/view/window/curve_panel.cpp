@@ -72,7 +72,7 @@ void CurvePanel::update() {
   const std::vector<ColorPoint>& curve = editor_->curve();
   line->InsertNextCell(static_cast<int>(curve.size()));
   for (const ColorPoint& point : curve) {
-    const double x = left + width * point.sample, y = bottom + height * point.opacity;
+    const double x = left + width * point.value, y = bottom + height * point.opacity;
     line->InsertCellPoint(line_places_->InsertNextPoint(x, y, 0));
     vertices->InsertNextCell({point_places_->InsertNextPoint(x, y, 0)});
     const auto& [red, green, blue] = point.color;
