@@ -73,6 +73,10 @@ tetwarp_sources(tetwarp_reader io/volume
 tetwarp_sources(tetwarp_reader io/reader
   dicom_${tetwarp_gdcm}.cpp image_readers.cpp mesh_${tetwarp_gmsh}.cpp mesh_readers.cpp
   mesh_sender.cpp mesh_${tetwarp_vtk}.cpp)
+if(TETWARP_HAS_GDCM)
+  tetwarp_sources(tetwarp_reader io/reader
+    ALONE dicom_frames.cpp)
+endif()
 if(TETWARP_HAS_VTK)
   tetwarp_sources(tetwarp_reader io/reader
     coarsen_vtk.cpp image_vtk.cpp mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_file_list.cpp

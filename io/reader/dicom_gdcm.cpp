@@ -8,7 +8,6 @@
 #include <gdcmTrace.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -17,8 +16,8 @@
 #include <type_traits>
 
 #include "host/base/pixel_dispatch.hpp"
-#include "host/base/point3.hpp"
 #include "io/image/dicom_stack.hpp"
+#include "io/reader/dicom_frames.hpp"
 #include "io/reader/image_readers.hpp"
 
 namespace tetwarp {
@@ -46,8 +45,9 @@ class DicomHeader {
   }
 
   bool is_read() const { return is_read_; }
+  const gdcm::DataSet& attributes() const { return reader_.GetFile().GetDataSet(); }
   bool has(std::uint16_t group, std::uint16_t element) const {
-    return reader_.GetFile().GetDataSet().FindDataElement(gdcm::Tag(group, element));
+    return attributes().FindDataElement(gdcm::Tag(group, element));
   }
   /// Without blanks at its ends; empty where the header lacks it.
   std::string text(std::uint16_t group, std::uint16_t element) const {
@@ -57,20 +57,8 @@ class DicomHeader {
     value.erase(value.find_last_not_of(blanks) + 1);
     return value;
   }
-  /// Numbers between backslashes; none where one is no number.
   std::vector<double> numbers(std::uint16_t group, std::uint16_t element) const {
-    const std::string all = text(group, element);
-    std::vector<double> found;
-    for (std::size_t at = 0; at < all.size();) {
-      const std::size_t past = std::min(all.find('\\', at), all.size());
-      while (at < past && (all[at] == ' ' || all[at] == '+')) ++at;
-      double number = 0;
-      const auto end = std::from_chars(all.data() + at, all.data() + past, number);
-      if (end.ec != std::errc() || !std::isfinite(number)) return {};
-      found.push_back(number);
-      at = past + 1;
-    }
-    return found;
+    return decimals_in(text(group, element));
   }
   double number(std::uint16_t group, std::uint16_t element, double otherwise) const {
     const std::vector<double> found = numbers(group, element);
@@ -99,31 +87,6 @@ void check_pixels(const std::string& path, const DicomHeader& header) {
   }
 }
 
-/// The slices of the frames of a dose grid (RTDOSE), which lie along the normal.
-std::vector<DicomSlice> dose_slices(const std::string& path,
-                                    const DicomHeader& header,
-                                    const DicomSlice& first,
-                                    int frames) {
-  const std::vector<double> offsets = header.numbers(0x3004, 0x000c);
-  if (std::ssize(offsets) != frames || first.orientation.size() != 6 ||
-      first.position.size() != 3) {
-    fail_in(path, "",
-            "holds " + std::to_string(frames) +
-                " frames, which are read of dose grids alone; convert it to NIfTI, for example by "
-                "dcm2niix");
-  }
-  const auto& o = first.orientation;
-  const Point3 normal = cross({o[0], o[1], o[2]}, {o[3], o[4], o[5]});
-  std::vector<DicomSlice> slices(offsets.size(), first);
-  for (std::size_t n = 0; n < slices.size(); ++n) {
-    slices[n].frame = static_cast<int>(n);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      slices[n].position[axis] += (offsets[n] - offsets[0]) * normal[axis];
-    }
-  }
-  return slices;
-}
-
 /// The slices of a file; none of a file that holds no image.
 std::vector<DicomSlice> slices_of(const std::string& path, const DicomHeader& header) {
   DicomSlice slice;
@@ -147,7 +110,7 @@ std::vector<DicomSlice> slices_of(const std::string& path, const DicomHeader& he
   slice.slope = header.number(0x0028, 0x1053, header.number(0x3004, 0x000e, 1));
   slice.intercept = header.number(0x0028, 0x1052, 0);
   const int frames = header.count(0x0028, 0x0008, 1);
-  return frames > 1 ? dose_slices(path, header, slice, frames) : std::vector{slice};
+  return frames > 1 ? slices_of_frames(header.attributes(), slice, frames) : std::vector{slice};
 }
 
 struct DicomFiles {

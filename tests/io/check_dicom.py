@@ -3,7 +3,7 @@
 Usage: check_dicom.py COMMAND
 
 Series are written here byte by byte, in 7 of the 48 orientations (tests/io/test_dicom_stack.cpp has any), with
-slices in any order of their names, rescaled values, tilted gantries, a dose grid and colors; the command
+slices in any order of their names, rescaled values, tilted gantries, a dose grid, enhanced images and colors; the command
 turns them into NIfTI images, which are parsed and compared. Where SimpleITK is installed, it reads the same series,
 and the command reads series that SimpleITK packs by JPEG 2000 and lossless JPEG. Images that the command writes
 as .vti are read by VTK, and the command reads what VTK writes, packed and with arrays of bits. Series that make
@@ -44,13 +44,13 @@ def decimals(numbers):
 
 
 def dicom(pixels, facts):
-    """A file of explicit little endian. pixels: [row][column], [row][column][color] or, of a dose grid,
+    """A file of explicit little endian. pixels: [row][column], [row][column][color] or, of several frames,
     [frame][row][column]; facts: elements by (group, number), as (VR, value), None to leave one out."""
     short = lambda number: struct.pack("<H", number)
     colors = pixels.ndim == 3 and pixels.shape[2] == 3
     shape = pixels.shape[:2] if colors or pixels.ndim == 2 else pixels.shape[1:]
     bits = 8 * pixels.dtype.itemsize
-    kind = "1.2.840.10008.5.1.4.1.1.2"  # CT
+    kind = facts.get((8, 0x16), (b"UI", "1.2.840.10008.5.1.4.1.1.2"))[1]  # CT
     all_facts = {
         (8, 0x16): (b"UI", kind), (8, 0x18): (b"UI", SERIES + ".1"), (8, 0x60): (b"CS", "CT"),
         (8, 0x103E): (b"LO", "thorax"), (0x10, 0x10): (b"PN", "Nobody"),
@@ -67,6 +67,15 @@ def dicom(pixels, facts):
             + element(2, 3, b"UI", SERIES + ".1") + element(2, 0x10, b"UI", "1.2.840.10008.1.2.1")
             + element(2, 0x12, b"UI", "1.2.3"))
     return b"\0" * 128 + b"DICM" + element(2, 0, b"UL", struct.pack("<I", len(meta))) + meta + body
+
+
+def sequence(*items):
+    """A sequence of items, each of elements by (group, number)."""
+    value = b""
+    for item in items:
+        body = b"".join(element(*tag, *fact) for tag, fact in sorted(item.items()))
+        value += struct.pack("<HHI", 0xFFFE, 0xE000, len(body)) + body
+    return b"SQ", value
 
 
 def slice_facts(affine, k):
@@ -205,6 +214,47 @@ def check_places(run, random_numbers):
     run("warp", "head", "moved.vtkhdf", "-o", "warped.nii", "--filter", "nearest")
     found, place = read_nifti(run.path("warped.nii"))
     expect("warped", (found[1:], place), (samples[:-1], affine))
+
+
+def check_enhanced(run, random_numbers):
+    """Frames in any order with a slope each, whose places are told frame by frame or of all together."""
+    samples = random_numbers.integers(-500, 500, DIMS).astype("i2")
+    enhanced = {(8, 0x16): (b"UI", "1.2.840.10008.5.1.4.1.1.2.1"), (0x28, 8): (b"IS", str(DIMS[2]))}
+    for n, affine in enumerate(itertools.islice(orientations(), 3, None, 12)):
+        order = random_numbers.permutation(DIMS[2])
+        slopes = random_numbers.integers(1, 4, DIMS[2]) * 0.5
+
+        def groups(k, slope):
+            facts = slice_facts(affine, k)
+            place = {(0x20, 0x9113): sequence({(0x20, 0x32): facts[(0x20, 0x32)]}),
+                     (0x28, 0x9145): sequence({(0x28, 0x1052): (b"DS", "3"),
+                                               (0x28, 0x1053): (b"DS", decimals([slope]))})}
+            alike = {(0x20, 0x9116): sequence({(0x20, 0x37): facts[(0x20, 0x37)]}),
+                     (0x28, 0x9110): sequence({(0x28, 0x30): facts[(0x28, 0x30)],
+                                               (0x18, 0x50): facts[(0x18, 0x50)]})}
+            return place, alike
+
+        found = [groups(k, slopes[k]) for k in order]
+        together = n % 2 == 0
+        frames = {(0x5200, 0x9230): sequence(*(p if together else {**p, **a} for p, a in found))}
+        shared = {(0x5200, 0x9229): sequence(found[0][1] if together else {})}
+        pixels = np.transpose(samples, (2, 1, 0))[order]
+        with open(run.path("enhanced.dcm"), "wb") as file:
+            file.write(dicom(pixels, {**enhanced, **frames, **shared}))
+        expect(f"enhanced {n}", read_by_command(run, "enhanced.dcm"),
+               sorted_volume(samples * slopes + 3, affine))
+
+    def refused(words, facts):
+        with open(run.path("enhanced.dcm"), "wb") as file:
+            file.write(dicom(pixels, {**enhanced, **facts}))
+        line = run.refused("export", "enhanced.dcm", "-o", "out.nii")
+        if words not in line:
+            sys.exit(f"enhanced: expected '{words}' in: {line}")
+
+    refused("frames, which are read of dose grids and enhanced images alone", {})
+    few = {(0x5200, 0x9230): sequence(*(p for p, _ in found[1:]))}
+    refused("frames, which are read of dose grids and enhanced images alone", few)
+    refused("no ImagePositionPatient", {(0x5200, 0x9230): sequence(*({} for _ in found))})
 
 
 def check_packed(run, random_numbers):
@@ -392,6 +442,7 @@ def main():
         check_orientations(run, random_numbers)
         check_values(run, random_numbers)
         check_places(run, random_numbers)
+        check_enhanced(run, random_numbers)
         check_packed(run, random_numbers)
         check_series(run, random_numbers)
         check_refusals(run, random_numbers)

@@ -7,6 +7,8 @@
 /// and its first moment to its own.
 #pragma once
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,9 +20,12 @@ struct Polygon {
   struct Corner {
     double x[size];
   };
-  /// Each cut adds one corner: to a triangle two per axis of two spaces, to a square fewer. Where
-  /// corners lie in a plane to within rounding, it may add more, for which there is some room.
-  static constexpr int capacity = 24;
+  /// Most corners of a part of a tetrahedron's face: three, and two for each of the three axes of
+  /// the output and two of the source, one for the last. Of its section with a plane, one less.
+  static constexpr int max_count = 14;
+  /// While a polygon is cut, every second corner may be on the other side by rounding: each then
+  /// has two crossings beside it.
+  static constexpr int capacity = max_count + max_count / 2;
 
   int count = 0;
   Corner corner[capacity];
@@ -47,57 +52,77 @@ typename Polygon<size>::Corner cut_edge(const typename Polygon<size>::Corner& lo
   return cut;
 }
 
+/// Which corners of a polygon count as above a plane if its boundary may cross the plane only
+/// twice: from the highest corner on, those before the first one below; from the lowest on, those
+/// from the first one above on. The others are in the plane to within rounding.
+/// @pre some corners are above the plane and some below
+template <int axis, int size>
+std::array<bool, Polygon<size>::capacity> above_of_chains(const Polygon<size>& from, double plane) {
+  int top = 0, bottom = 0;
+  for (int c = 1; c < from.count; ++c) {
+    if (from.corner[c].x[axis] > from.corner[top].x[axis]) top = c;
+    if (from.corner[c].x[axis] < from.corner[bottom].x[axis]) bottom = c;
+  }
+  std::array<bool, Polygon<size>::capacity> above = {};
+  bool is_above = true, is_rising = false;
+  for (int n = 0, c = top; n < from.count; ++n, c = c + 1 == from.count ? 0 : c + 1) {
+    is_rising = is_rising || c == bottom;
+    const bool is_there = from.corner[c].x[axis] >= plane;
+    is_above = is_rising ? is_above || is_there : is_above && is_there;
+    if (c == bottom) is_above = false;
+    above[static_cast<std::size_t>(c)] = is_above;
+  }
+  return above;
+}
+
+/// Cuts a polygon at a plane into the corners for which is_above(c) is true and the others.
+/// @param below  out; null: not wanted
+/// @returns how often the boundary crosses the plane
+template <int axis, int size, class IsAbove>
+int cut_by(const Polygon<size>& from,
+           double plane,
+           const IsAbove& is_above,
+           Polygon<size>* below,
+           Polygon<size>& above) {
+  using Corner = typename Polygon<size>::Corner;
+  int below_count = 0, above_count = 0, crossings = 0;
+  const Corner* last = &from.corner[from.count - 1];
+  bool was_above = is_above(from.count - 1);
+  for (int c = 0; c < from.count; ++c) {
+    const Corner* const now = &from.corner[c];
+    const bool is_now = is_above(c);
+    if (is_now != was_above) {
+      const Corner cut = cut_edge<axis, size>(is_now ? *last : *now, is_now ? *now : *last, plane);
+      if (below != nullptr) below->corner[below_count++] = cut;
+      above.corner[above_count++] = cut;
+      ++crossings;
+    }
+    if (is_now) {
+      above.corner[above_count++] = *now;
+    } else if (below != nullptr) {
+      below->corner[below_count++] = *now;
+    }
+    last = now;
+    was_above = is_now;
+  }
+  if (below != nullptr) below->count = below_count;
+  above.count = above_count;
+  return crossings;
+}
+
 /// Cuts a polygon at the plane where a coordinate is `plane`. Corners in the plane are above it.
+/// Each part has at most one corner more than the polygon.
+/// @param below  out; null: not wanted
 template <int axis, int size>
 void cut_polygon(const Polygon<size>& from,
                  double plane,
-                 Polygon<size>& below,
+                 Polygon<size>* below,
                  Polygon<size>& above) {
-  using Corner = typename Polygon<size>::Corner;
-  int below_count = 0, above_count = 0;
-  const Corner* last = &from.corner[from.count - 1];
-  bool was_above = last->x[axis] >= plane;
-  for (int c = 0; c < from.count; ++c) {
-    const Corner* const now = &from.corner[c];
-    const bool is_above = now->x[axis] >= plane;
-    const int most = (below_count > above_count ? below_count : above_count) + from.count - c;
-    if (is_above != was_above && most < Polygon<size>::capacity) {
-      const Corner cut =
-          cut_edge<axis, size>(is_above ? *last : *now, is_above ? *now : *last, plane);
-      below.corner[below_count++] = cut;
-      above.corner[above_count++] = cut;
-    }
-    if (is_above) {
-      above.corner[above_count++] = *now;
-    } else {
-      below.corner[below_count++] = *now;
-    }
-    last = now;
-    was_above = is_above;
-  }
-  below.count = below_count;
-  above.count = above_count;
-}
-
-/// The part of cut_polygon() above the plane alone.
-template <int axis, int size>
-void cut_above(const Polygon<size>& from, double plane, Polygon<size>& above) {
-  using Corner = typename Polygon<size>::Corner;
-  int count = 0;
-  const Corner* last = &from.corner[from.count - 1];
-  bool was_above = last->x[axis] >= plane;
-  for (int c = 0; c < from.count; ++c) {
-    const Corner* const now = &from.corner[c];
-    const bool is_above = now->x[axis] >= plane;
-    if (is_above != was_above && count + from.count - c < Polygon<size>::capacity) {
-      above.corner[count++] =
-          cut_edge<axis, size>(is_above ? *last : *now, is_above ? *now : *last, plane);
-    }
-    if (is_above) above.corner[count++] = *now;
-    last = now;
-    was_above = is_above;
-  }
-  above.count = count;
+  const auto is_above = [&](int c) { return from.corner[c].x[axis] >= plane; };
+  if (cut_by<axis>(from, plane, is_above, below, above) <= 2) return;
+  const auto chains = above_of_chains<axis>(from, plane);
+  const auto is_of_chain = [&](int c) { return chains[static_cast<std::size_t>(c)]; };
+  cut_by<axis>(from, plane, is_of_chain, below, above);
 }
 
 /// First and last of the intervals [n, n + 1] that a coordinate of a polygon is in.
@@ -127,13 +152,13 @@ void for_intervals(
   Polygon<size> part, memory[2];
   const Polygon<size>* rest = &polygon;
   if (range.first < begin) {
-    cut_polygon<axis>(*rest, begin, part, memory[1]);
+    cut_polygon<axis>(*rest, begin, &part, memory[1]);
     rest = &memory[1];
     range.first = begin;
   }
   for (int n = range.first; n < range.last && n < end && rest->has_area(); ++n) {
     Polygon<size>& above = memory[(n - range.first) & 1];
-    cut_polygon<axis>(*rest, n + 1, part, above);
+    cut_polygon<axis>(*rest, n + 1, &part, above);
     if (part.has_area()) visit(n, part);
     rest = &above;
   }
@@ -213,7 +238,7 @@ class FacetParts {
     const Polygon<3>* rest = &bar;
     for (int n = range.first; n < range.last; ++n, ++voxel[0]) {
       Polygon<3>& above = memory[n & 1];
-      cut_above<0>(*rest, n + 1, above);
+      cut_polygon<0, 3>(*rest, n + 1, nullptr, above);
       const Moments next = above.has_area() ? moments_of(above, n + 1) : Moments{0, 0};
       add({now.area - next.area, now.moment - next.moment - next.area}, voxel);
       now = next;
