@@ -136,6 +136,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_transforms.cpp
   tests/cli/test_cli_warnings.cpp
+  tests/cli/test_cli_field_batch.cpp
   host/cli/tools/chart.cpp)
 target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)

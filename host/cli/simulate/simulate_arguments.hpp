@@ -35,7 +35,7 @@ struct SimulateArguments {
   std::string warped_body;  ///< empty: all that are made of a volume
   bool has_filter = false;  ///< --filter was given
   WarpOptions warp;
-  GridChoice grid{"bounds", {}, {}, {}, {}};
+  GridChoice grid{"bounds", {}, {}, {}, {}, {}};
   int compress = 0;
 
   bool draws = false;                           ///< pictures

@@ -22,6 +22,7 @@ struct RenderArguments {
   std::string beside;
   std::string output;
   std::string array;
+  std::string series;
   std::optional<std::int64_t> step;
   RenderOptions render;
   bool quiet = false;
@@ -37,10 +38,13 @@ int run_render(const RenderArguments& arguments) {
     throw IoError(arguments.output, "", "the name of a picture ends in .png");
   }
   check_output_file(arguments.output, inputs);
+  check_series(arguments.series, inputs);
+  VolumeReadOptions read;
+  read.series = arguments.series;
   std::vector<Volume> volumes;
   volumes.reserve(inputs.size());
   for (const std::string& input : inputs) {
-    volumes.push_back(read_array(input, arguments.array, arguments.step));
+    volumes.push_back(read_array(input, arguments.array, arguments.step, read));
   }
   std::vector<const Volume*> rows;
   rows.reserve(volumes.size());
@@ -69,6 +73,7 @@ void add_render_command(CLI::App& app, Run& run) {
       ->type_name("VOLUME");
   command->add_option("--array", arguments->array, "array to draw [active scalars]")
       ->type_name("NAME");
+  add_series(*command, arguments->series);
   command->add_option("--step", arguments->step, "step of volume files with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");
