@@ -26,7 +26,7 @@ tetwarp_sources(tetwarp_io io/image
   image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp mgh_header.cpp
   nrrd_header.cpp vti_write.cpp)
 tetwarp_sources(tetwarp_io io/import
-  merge_cells.cpp mesh_child.cpp mesh_import.cpp)
+  coarse_surface.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp)
 tetwarp_sources(tetwarp_io io/nifti
   nifti_components.cpp nifti_extension.cpp nifti_facts.cpp nifti_fields.cpp nifti_grid.cpp
   nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)
@@ -36,7 +36,7 @@ tetwarp_sources(tetwarp_io io/points
   foreign_points.cpp markup_points.cpp point_file.cpp text_points.cpp vtkhdf_points.cpp)
 tetwarp_sources(tetwarp_io io/scene
   scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_files.cpp
-  scene_geometry.cpp scene_json.cpp scene_motion.cpp)
+  scene_geometry.cpp scene_json.cpp scene_loft.cpp scene_motion.cpp transfer_file.cpp)
 tetwarp_sources(tetwarp_io io/transforms
   field_file.cpp fsl_field.cpp itk_transform.cpp itk_transform_files.cpp transform_file.cpp)
 tetwarp_sources(tetwarp_io io/volume
@@ -79,7 +79,7 @@ if(TETWARP_HAS_GDCM)
 endif()
 if(TETWARP_HAS_VTK)
   tetwarp_sources(tetwarp_reader io/reader
-    image_vtk.cpp mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_file_list.cpp
+    coarsen_vtk.cpp image_vtk.cpp mesh_vtk_arrays.cpp surface_seams.cpp surface_vtk.cpp vtk_file_list.cpp
     vtk_point_set.cpp vtk_steps.cpp)
 endif()
 set_target_properties(tetwarp_reader PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)

@@ -38,9 +38,9 @@ tetwarp_sources(tetwarp host/contact/sweeps
 tetwarp_sources(tetwarp host/contact/tracker
   input_checks.cpp match.cpp record_update.cpp tracker.cpp)
 tetwarp_sources(tetwarp host/make
-  deform_mesh.cpp lattice_mesh.cpp phantom.cpp phantom_fish.cpp phantom_orange.cpp
-  phantom_organs.cpp phantom_torso.cpp picture_view.cpp render_surfaces.cpp render_volume.cpp
-  surface_soup.cpp)
+  clear_blocks.cpp deform_mesh.cpp lattice_mesh.cpp phantom.cpp phantom_fish.cpp
+  phantom_orange.cpp phantom_organs.cpp phantom_torso.cpp picture_view.cpp render_surfaces.cpp
+  render_volume.cpp surface_picture.cpp surface_soup.cpp transfer.cpp volume_rays.cpp)
 tetwarp_sources(tetwarp host/reference/contact
   bilateral.cpp contact.cpp dense.cpp enumerate.cpp feasible.cpp gauss_seidel.cpp least_norm.cpp
   local.cpp)
@@ -54,9 +54,9 @@ tetwarp_sources(tetwarp host/reference/warp
   sample_transform.cpp)
 tetwarp_sources(tetwarp host/scene
   alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp
-  lattice_search.cpp marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp
-  shape_fraction.cpp shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp
-  voxel_owner.cpp voxel_shares.cpp)
+  lattice_search.cpp loft.cpp loft_line.cpp marching_tets.cpp ring_surface.cpp rings.cpp
+  scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp shape_lattice.cpp shape_surface.cpp
+  sheet.cpp surface.cpp surface_lattice.cpp surface_solid.cpp voxel_owner.cpp voxel_shares.cpp)
 tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
 tetwarp_sources(tetwarp host/simulate/contact_step
@@ -73,7 +73,7 @@ tetwarp_sources(tetwarp host/simulate/run
   added_handles.cpp body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
   fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
   simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
-  step_records.cpp tet_energies.cpp)
+  step_records.cpp tet_energies.cpp turning_moments.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
   contact_shares.cpp contact_system.cpp deformable_solver.cpp general_solver.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem
@@ -102,8 +102,8 @@ tetwarp_sources(tetwarp host/warp
   backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp map_points.cpp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
-  backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_taps.cpp
-  overlap_stage_cpu.cpp resample.cpp transform_links.cpp
+  backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_plan.cpp
+  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp transform_links.cpp
   voxel_places.cpp warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
   row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda

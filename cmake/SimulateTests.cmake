@@ -5,11 +5,13 @@ if(NOT BUILD_SHARED_LIBS)
     tests/scene/test_image_lattice.cpp
     tests/scene/test_voxel_shares.cpp
     tests/scene/test_isosurface.cpp
+    tests/scene/test_loft.cpp
     tests/scene/test_scene_geometry.cpp
     tests/scene/test_shape.cpp
     tests/scene/test_shape_lattice.cpp
     tests/scene/test_shape_surface.cpp
-    tests/scene/test_surface_lattice.cpp)
+    tests/scene/test_surface_lattice.cpp
+    tests/scene/test_surface_solid.cpp)
   set(tetwarp_model_tests       # masses, elements, springs, the Simulator
     tests/simulate/step/test_model_cloth.cpp
     tests/simulate/step/test_model_couplings.cpp

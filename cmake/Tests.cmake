@@ -153,7 +153,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp.cpp
     tests/warp/test_warp_arguments.cpp
     tests/warp/test_warp_filters.cpp
-    tests/warp/test_warp_invariance.cpp)
+    tests/warp/test_warp_invariance.cpp
+    tests/make/test_cast_volumes.cpp)
   target_link_libraries(tetwarp_tests PRIVATE tetwarp_hwy)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
@@ -161,6 +162,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_tests unit)
 
   tetwarp_add_tests(tetwarp_reference_tests SOURCES
+    tests/warp/test_conservative_operator.cpp
     tests/warp/test_coverage.cpp
     tests/warp/test_warp_operator.cpp
     tests/warp/test_warp_values.cpp)

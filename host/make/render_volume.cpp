@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <tetwarp/cast.hpp>
 #include <tetwarp/make.hpp>
 #include <vector>
 
 #include "host/base/counter_hash.hpp"
 #include "host/base/parallel.hpp"
 #include "host/base/pixel_dispatch.hpp"
+#include "host/make/shown_value.hpp"
 
 namespace tetwarp {
 namespace {
@@ -31,17 +33,6 @@ struct Window {
     return value >= high ? 1 : (value - low) / (high - low);
   }
 };
-
-/// The number drawn for a voxel: its value or, for several components, their Euclidean norm.
-template <class T>
-double shown_value(const T* sample, int components) {
-  if (components == 1) return static_cast<double>(*sample);
-  double sum = 0;
-  for (int c = 0; c < components; ++c) {
-    sum += static_cast<double>(sample[c]) * static_cast<double>(sample[c]);
-  }
-  return std::sqrt(sum);
-}
 
 /// The finite values of all voxels of a small volume, of randomly chosen voxels of a large one.
 std::vector<double> finite_values(const Volume& volume) {
@@ -214,6 +205,14 @@ void check_arguments(std::span<const Volume* const> volumes, const RenderOptions
   }
 }
 }  // namespace
+
+RenderOptions with_window(const Volume& volume, const RenderOptions& options) {
+  const Volume* const checked = &volume;
+  check_arguments({&checked, 1}, options);
+  const Window window = window_of(volume, options);
+  const bool is_flat = !(window.low < window.high);  // the least value above low is white
+  return {window.low, is_flat ? std::nextafter(window.low, INFINITY) : window.high, options.height};
+}
 
 Image render(std::span<const Volume* const> volumes, const RenderOptions& options) {
   check_arguments(volumes, options);

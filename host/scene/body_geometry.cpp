@@ -15,6 +15,7 @@
 #include "host/scene/shape_surface.hpp"
 #include "host/scene/sheet.hpp"
 #include "host/scene/surface.hpp"
+#include "host/scene/surface_solid.hpp"
 
 namespace tetwarp {
 namespace {
@@ -63,7 +64,7 @@ void take_mesh(const std::string& place, BodyParts& parts, const Mesh& mesh) {
   take_tets(parts.geometry, std::move(tets), across);
 }
 
-/// The lattice of a shape or image, the tetrahedra of a mesh.
+/// The lattice of a shape, an image or a closed surface, the tetrahedra of a mesh.
 void take_volume(const std::string& place, BodyParts& parts, const Body& body) {
   if (const auto* shape = std::get_if<Shape>(&body.geometry)) {
     ShapeLattice lattice = make_shape_lattice(key_of(place, "lattice"), *shape, *body.lattice);
@@ -76,6 +77,12 @@ void take_volume(const std::string& place, BodyParts& parts, const Body& body) {
     ImageLattice lattice = make_image_lattice(place, *image, *body.lattice);
     take_tets(parts.geometry, std::move(lattice.mesh), lattice.cells_across);
     parts.geometry.shares_voxels = lattice.has_small_cells;
+  } else if (const auto* surface = std::get_if<Surface>(&body.geometry)) {
+    check_areas(key_of(place, "mesh"), *surface);
+    check_closed(key_of(place, "mesh"), *surface);
+    ShapeLattice lattice = make_solid_lattice(key_of(place, "lattice"), *surface, *body.lattice);
+    parts.geometry.tet_fraction = std::move(lattice.fraction);
+    take_tets(parts.geometry, std::move(lattice.mesh), lattice.cells_across);
   } else {
     take_mesh(key_of(place, "mesh"), parts, std::get<Mesh>(body.geometry));
   }
@@ -109,7 +116,8 @@ void make_fem(const std::string& place, BodyParts& parts, const Body& body) {
   take_volume(place, parts, body);
   BodyGeometry& geometry = parts.geometry;
   const bool is_default = std::holds_alternative<std::monostate>(body.surface);
-  if (!is_default || std::holds_alternative<ImageGeometry>(body.geometry)) {
+  if (!is_default || std::holds_alternative<ImageGeometry>(body.geometry) ||
+      std::holds_alternative<Surface>(body.geometry)) {
     geometry.surface = own_surface(place, body);
     return;
   }

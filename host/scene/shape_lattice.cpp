@@ -70,11 +70,11 @@ std::array<std::int64_t, 3> cells_near(const Point3& length, std::int64_t wanted
   }
   return best;
 }
+}  // namespace
 
-/// Box, plate or bent strip: cells fill it.
-ShapeLattice filling_lattice(const std::string& place,
-                             const Bounds& bounds,
-                             const Lattice& choice) {
+ShapeLattice make_filling_lattice(const std::string& place,
+                                  const Bounds& bounds,
+                                  const Lattice& choice) {
   const Point3 length = minus(bounds.high, bounds.low);
   const auto frame_of_edge = [&](double edge, double) {
     std::array<std::int64_t, 3> cells{};
@@ -92,16 +92,15 @@ ShapeLattice filling_lattice(const std::string& place,
   }
   return lattice;
 }
-}  // namespace
 
 ShapeLattice make_shape_lattice(const std::string& place,
                                 const Shape& shape,
                                 const Lattice& choice) {
   if (std::holds_alternative<BoxShape>(shape) || std::holds_alternative<PlateShape>(shape)) {
-    return filling_lattice(place, bounds_of(shape), choice);
+    return make_filling_lattice(place, bounds_of(shape), choice);
   }
   if (const auto* strip = std::get_if<BentStripShape>(&shape)) {
-    ShapeLattice lattice = filling_lattice(place, straight_bounds(*strip), choice);
+    ShapeLattice lattice = make_filling_lattice(place, straight_bounds(*strip), choice);
     map_nodes(lattice.mesh, [&](const Point3& x) {
       return Point3{x[0], x[1], x[2] + rise_of(*strip, x[0])};
     });

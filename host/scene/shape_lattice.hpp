@@ -17,6 +17,13 @@ struct ShapeLattice {
   Point3 cells_across{0, 0, 0};  ///< extent of the shape over the edges of cells
 };
 
+/// Cells that fill a box, nearly cubes if their edge or the number of tetrahedra is given.
+/// @param place  of the choice, for messages
+/// @throws std::invalid_argument  too many tetrahedra
+ShapeLattice make_filling_lattice(const std::string& place,
+                                  const Bounds& bounds,
+                                  const Lattice& choice);
+
 /// Cells fill boxes, plates and (raised as its points are) bent strips exactly. Around other shapes
 /// they cover the bounds; tetrahedra without a part inside are dropped.
 /// @param place  of the choice, for messages

@@ -115,15 +115,12 @@ double winding_number(const Surface& surface, const Point3& point) {
   return sum / (2 * std::numbers::pi);
 }
 
-TetMesh make_surface_lattice(const std::string& place, const Surface& surface, std::int64_t cells) {
-  const Bounds bounds = bounds_of(surface.points);
-  const Point3 length = minus(bounds.high, bounds.low);
-  const double edge = *std::max_element(length.begin(), length.end()) / static_cast<double>(cells);
-  check_cells(place, {std::ceil(length[0] / edge) + 1, std::ceil(length[1] / edge) + 1,
-                      std::ceil(length[2] / edge) + 1});
-  const LatticeFrame frame = covering_frame(bounds, {edge, edge, edge}, 0);
+TetMesh tets_around(const LatticeFrame& frame,
+                    const Surface& surface,
+                    std::vector<std::uint8_t>* is_cut) {
   TetMesh mesh = make_lattice(frame);
-  std::vector<std::uint8_t> is_kept = touched_tets(mesh, frame, surface);
+  const std::vector<std::uint8_t> is_touched = touched_tets(mesh, frame, surface);
+  std::vector<std::uint8_t> is_kept = is_touched;
   // No triangle touches the nodes of the other tetrahedra: those that share one are inside or
   // outside together.
   DisjointSets sets(mesh.nodes.size());
@@ -141,8 +138,23 @@ TetMesh make_surface_lattice(const std::string& place, const Surface& surface, s
     if (inside < 0) inside = winding_number(surface, mesh.nodes[root]) > 0.5;
     is_kept[t] = inside != 0;
   }
+  if (is_cut != nullptr) {
+    is_cut->clear();
+    for (std::size_t t = 0; t < is_kept.size(); ++t) {
+      if (is_kept[t]) is_cut->push_back(is_touched[t]);
+    }
+  }
   keep_tets(mesh, is_kept);
   return mesh;
+}
+
+TetMesh make_surface_lattice(const std::string& place, const Surface& surface, std::int64_t cells) {
+  const Bounds bounds = bounds_of(surface.points);
+  const Point3 length = minus(bounds.high, bounds.low);
+  const double edge = *std::max_element(length.begin(), length.end()) / static_cast<double>(cells);
+  check_cells(place, {std::ceil(length[0] / edge) + 1, std::ceil(length[1] / edge) + 1,
+                      std::ceil(length[2] / edge) + 1});
+  return tets_around(covering_frame(bounds, {edge, edge, edge}, 0), surface);
 }
 
 }  // namespace tetwarp

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <tetwarp/scene.hpp>
 
@@ -17,6 +18,13 @@ bool may_touch(const std::array<Point3, 4>& tet, const std::array<Point3, 3>& tr
 
 /// How often a surface winds around a point: 1 inside a closed surface, 0 outside.
 double winding_number(const Surface& surface, const Point3& point);
+
+/// The tetrahedra of a frame that a triangle may touch and those inside.
+/// @pre check_closed() has passed
+/// @param is_cut  out, unless null: per tetrahedron whether a triangle may touch it
+TetMesh tets_around(const LatticeFrame& frame,
+                    const Surface& surface,
+                    std::vector<std::uint8_t>* is_cut = nullptr);
 
 /// Cubes around the surface's box, `cells` along its longest side; kept are the tetrahedra that a
 /// triangle may touch and those inside.

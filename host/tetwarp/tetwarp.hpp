@@ -4,6 +4,7 @@
 #include <tetwarp/backend.hpp>
 #include <tetwarp/blocks.hpp>
 #include <tetwarp/camera.hpp>
+#include <tetwarp/cast.hpp>
 #include <tetwarp/certify.hpp>
 #include <tetwarp/choices.hpp>
 #include <tetwarp/contact.hpp>
@@ -11,6 +12,7 @@
 #include <tetwarp/contact_problem.hpp>
 #include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>
+#include <tetwarp/loft.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/map_points.hpp>
 #include <tetwarp/mesh.hpp>

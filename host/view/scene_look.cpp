@@ -83,7 +83,7 @@ Rgb color_of(std::size_t body) {
   return color;
 }
 
-SceneDrawing drawing_of(const Simulator& simulator) {
+SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces* looks) {
   SceneDrawing drawing;
   const Scene& scene = simulator.scene();
   for (const Obstacle& obstacle : scene.obstacles) {
@@ -93,11 +93,13 @@ SceneDrawing drawing_of(const Simulator& simulator) {
     }
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    drawing.points.push_back(simulator.surface_positions(b));
+    const bool has_look = looks != nullptr && looks->of(b) != nullptr;
+    drawing.points.push_back(has_look ? looks->positions(b) : simulator.surface_positions(b));
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    drawing.surfaces.push_back(
-        {drawing.points[b], simulator.body(b).surface.triangles, color_of(b)});
+    const Surface* const look = looks != nullptr ? looks->of(b) : nullptr;
+    const Surface& surface = look != nullptr ? *look : simulator.body(b).surface;
+    drawing.surfaces.push_back({drawing.points[b], surface.triangles, color_of(b)});
   }
   for (const Surface& surface : drawing.obstacles) {
     drawing.surfaces.push_back({surface.points, surface.triangles, obstacle_color});

@@ -9,6 +9,8 @@
 #include <tetwarp/make.hpp>
 #include <tetwarp/simulate.hpp>
 
+#include "host/view/look_surfaces.hpp"
+
 namespace tetwarp::view {
 
 using Rgb = std::array<double, 3>;  ///< red, green, blue in sRGB, 0 to 1
@@ -26,7 +28,8 @@ struct SceneDrawing {
 };
 
 /// The state of a simulator, which must outlive the drawing.
-SceneDrawing drawing_of(const Simulator& simulator);
+/// @param looks  of this simulator; null: bodies are drawn by what they touch with
+SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces* looks = nullptr);
 
 /// The camera of a scene, or one that shows the whole scene, and where it will be if it falls.
 /// @param aspect  width over height of the picture

@@ -5,28 +5,29 @@
 #include <string>
 #include <vector>
 
-namespace tetwarp::view {
+#include <tetwarp/cast.hpp>
 
-/// A point of a curve that is linear between its points.
-struct ColorPoint {
-  double sample = 0;  ///< of VolumeFrame::samples
-  std::array<double, 3> color{};
-  double opacity = 0;  ///< over a two-hundredth of the diagonal of the volume, 0 to 1
-};
+namespace tetwarp::view {
 
 /// Turning the window moves and stretches the curve.
 class VolumeColors {
  public:
   /// @param preset     ct or mr
-  /// @param low, high  values of the volume that are sample 0 and the largest one. Computed
-  ///                   tomographies, whose air is below -500 and bone above 300, get the usual
-  ///                   limits in Hounsfield units; of other volumes the range is divided.
+  /// @param low, high  values of the volume that are sample 0 and the largest one, as those of
+  ///                   preset_colors()
   VolumeColors(const std::string& preset, double low, double high);
+
+  /// The curve with values as shares: 0 is the first, 1 the last.
+  std::vector<ColorPoint> curve() const;
+  /// Another curve between the same ends. @param curve  as curve() gives it, with two points or
+  /// more
+  void set_curve(const std::vector<ColorPoint>& curve);
 
   /// @param level  by how much the curve moves, in its widths
   /// @param width  factor of its width, > 0
   void set_window(double level, double width);
 
+  /// Their values are those of VolumeFrame::samples, their opacities over preset_length().
   std::vector<ColorPoint> points() const;
   /// Samples between which slices go from black to white.
   std::array<double, 2> gray() const;

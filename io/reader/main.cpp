@@ -1,6 +1,7 @@
 /// @file main.cpp
 /// The program tetwarp-read: reads one mesh by VTK or Gmsh, or one image by GDCM or VTK, and sends
-/// it to the program that has started it, or gives the points of a file new places.
+/// it to the program that has started it, gives the points of a file new places, or makes a
+/// surface coarser.
 #include <cstdlib>
 
 #include "io/reader/image_readers.hpp"
@@ -12,5 +13,5 @@ int main(int argc, char** argv) {
   std::_Exit(tetwarp::send_result(
       argc, argv,
       {tetwarp::read_foreign_mesh, tetwarp::read_vtk_points, tetwarp::place_vtk_points,
-       tetwarp::read_foreign_image, tetwarp::read_foreign_samples}));
+       tetwarp::read_foreign_image, tetwarp::read_foreign_samples, tetwarp::coarsen_by_vtk}));
 }

@@ -25,6 +25,12 @@ ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& 
   return read_vtk_mesh(path, options);
 }
 
+CoarseMesh coarsen_by_vtk(const std::string& path, double) {
+  throw IoError(path, "",
+                "this build cannot make coarser surfaces; install libvtk9-dev and build again, or "
+                "name a coarser surface by \"mesh\"");
+}
+
 ForeignImage read_vtk_image(const std::string& path) {
   throw IoError(path, "",
                 "this build cannot read .vti; install libvtk9-dev and build again, or convert to "

@@ -31,6 +31,17 @@ void place_vtk_points(const std::string& path,
                       const std::string& numbers,
                       const std::string& output);
 
+/// Triangles, as the members of Surface.
+struct CoarseMesh {
+  std::vector<Point3> points;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+};
+
+/// Decimates by VTK, see coarse_surface().
+/// @param path  a file of the numbers of points and triangles as uint64, x y z as float64 for every
+///              point, and three int32 for every triangle
+CoarseMesh coarsen_by_vtk(const std::string& path, double distance);
+
 /// Reads a mesh by the library of its format. Most checks are left to import_mesh().
 ImportedMesh read_foreign_mesh(const std::string& path, const MeshImportOptions& options);
 

@@ -79,6 +79,11 @@ void answer(MessageWriter& message,
   } else if (what == "place") {
     calls.place(path, words.at(3), words.at(4));
     message(ChildOutcome::result);
+  } else if (what == "coarsen") {
+    const CoarseMesh mesh = calls.coarsen(path, std::stod(words.at(3)));
+    message(ChildOutcome::result);
+    message(mesh.points);
+    message(mesh.triangles);
   } else if (what == "image") {
     const ForeignImage image = calls.image(path, words.at(3));
     message(ChildOutcome::result);

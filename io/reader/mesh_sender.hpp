@@ -8,6 +8,7 @@
 #include <tetwarp/mesh_import.hpp>
 
 #include "io/child/foreign_image.hpp"
+#include "io/reader/mesh_readers.hpp"
 
 namespace tetwarp {
 
@@ -27,13 +28,15 @@ struct ReaderCalls {
                      const TakeImage& take_image,
                      const TakeSlice& take)>
       samples = {};
+  /// Gives a surface of fewer triangles, see coarse_surface().
+  std::function<CoarseMesh(const std::string& path, double distance)> coarsen = {};
 };
 
 /// Does what the arguments tell, and sends the result to the standard output, where nothing else
 /// arrives: PATH MEMORY solids|triangles [DISPLACEMENT], PATH MEMORY points,
-/// PATH MEMORY place NUMBERS OUTPUT, PATH MEMORY image SERIES, or PATH MEMORY samples ARRAY SERIES,
-/// as the functions of mesh_child.hpp and foreign_image.hpp give them. Limits the
-/// memory, leaves no core file, and is killed with the thread that started it.
+/// PATH MEMORY place NUMBERS OUTPUT, PATH MEMORY coarsen DISTANCE, PATH MEMORY image SERIES, or
+/// PATH MEMORY samples ARRAY SERIES, as the functions of mesh_child.hpp and foreign_image.hpp give
+/// them. Limits the memory, leaves no core file, and is killed with the thread that started it.
 /// @returns the exit code
 int send_result(int argc, char** argv, const ReaderCalls& calls);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io.hpp>
 #include <tetwarp/scene_io.hpp>
@@ -23,6 +24,8 @@ void SceneFiles::add(const SceneValue& value, std::function<void()> read) {
     try {
       read();
     } catch (const IoError& error) {
+      value.fail(error.what());
+    } catch (const std::invalid_argument& error) {
       value.fail(error.what());
     }
   });

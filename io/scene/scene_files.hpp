@@ -25,7 +25,8 @@ class SceneFiles {
   /// All results of path_of().
   const std::vector<std::string>& names() const { return names_; }
 
-  /// Has `read` called by read_all(), with its IoErrors put down to `value`.
+  /// Has `read` called by read_all(), with its IoErrors and invalid arguments put down to
+  /// `value`.
   void add(const SceneValue& value, std::function<void()> read);
 
   /// The same for the volume of an image. Volumes with equal `content` are made once and copied.

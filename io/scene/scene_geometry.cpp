@@ -3,47 +3,56 @@
 #include "io/scene/scene_geometry.hpp"
 
 #include <cmath>
+#include <tetwarp/certify.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io.hpp>
 #include <tetwarp/scene_io.hpp>
 
+#include "host/base/point3.hpp"
 #include "io/files/memory.hpp"
+#include "io/import/coarse_surface.hpp"
 #include "io/scene/scene_files.hpp"
+#include "io/scene/scene_loft.hpp"
 
 namespace tetwarp {
 namespace {
-/// A shape by the word `type` and the keys beside it.
-Shape read_shape(const SceneValue& value) {
-  SceneObject object(value);
-  const SceneValue type = object.get("type", "e.g. \"box\"");
+/// A shape by its type and the keys beside it.
+Shape shape_of_type(const SceneValue& type, SceneObject& object) {
+  const std::string word = type.text();
   const auto length = [&](const char* key) { return object.get(key, "a length in m").number(); };
   const auto lengths = [&](const char* key) {
     return object.get(key, "three lengths [x, y, z] in m").point();
   };
-  const auto shape_of = [&](const std::string& word) -> Shape {
-    if (word == "box") return BoxShape{lengths("half")};
-    if (word == "ellipsoid") return EllipsoidShape{lengths("radii")};
-    if (word == "plate") return PlateShape{lengths("size")};
-    if (word == "capsule") return CapsuleShape{length("radius"), length("length")};
-    if (word == "cylinder") return CylinderShape{length("radius"), length("length")};
-    if (word == "torus") return TorusShape{length("radius"), length("tube")};
-    if (word == "sphere") {
-      const double radius = length("radius");
-      return EllipsoidShape{{radius, radius, radius}};
-    }
-    if (word == "arc") {
-      return ArcShape{length("radius"), length("tube"),
-                      object.get("angles", "[first, second] in rad").array<2>()};
-    }
-    if (word == "bent_strip") {
-      return BentStripShape{length("width"), length("height"), length("depth"), length("sag")};
-    }
-    type.fail_word("is no shape", {"box", "sphere", "ellipsoid", "capsule", "cylinder", "torus",
-                                   "arc", "bent_strip", "plate"});
-  };
-  const Shape shape = shape_of(type.text());
+  if (word == "box") return BoxShape{lengths("half")};
+  if (word == "ellipsoid") return EllipsoidShape{lengths("radii")};
+  if (word == "plate") return PlateShape{lengths("size")};
+  if (word == "capsule") return CapsuleShape{length("radius"), length("length")};
+  if (word == "cylinder") return CylinderShape{length("radius"), length("length")};
+  if (word == "torus") return TorusShape{length("radius"), length("tube")};
+  if (word == "sphere") {
+    const double radius = length("radius");
+    return EllipsoidShape{{radius, radius, radius}};
+  }
+  if (word == "arc") {
+    return ArcShape{length("radius"), length("tube"),
+                    object.get("angles", "[first, second] in rad").array<2>()};
+  }
+  if (word == "bent_strip") {
+    return BentStripShape{length("width"), length("height"), length("depth"), length("sag")};
+  }
+  type.fail_word("is no shape", {"box", "sphere", "ellipsoid", "capsule", "cylinder", "torus",
+                                 "arc", "bent_strip", "plate", "loft"});
+}
+
+void read_shape(const SceneValue& value, SceneFiles& files, Body& into) {
+  SceneObject object(value);
+  const SceneValue type = object.get("type", "e.g. \"box\"");
+  if (type.text() == "loft") {
+    read_loft(value, object, files, into);
+  } else {
+    into.geometry = shape_of_type(type, object);
+  }
   object.finish();
-  return shape;
 }
 
 // ---- volumes ------------------------------------------------------------------
@@ -121,7 +130,21 @@ void read_volume_key(const SceneValue& value, SceneFiles& files, Body& into) {
   object.finish();
 }
 
+constexpr double most_distance = 0.1;  // of a coarser surface, over the body's size
+
 // ---- meshes -------------------------------------------------------------------
+/// Refuses surfaces that touch themselves: they do not tell inside from outside.
+/// @param what  the surface, for the message
+void check_simple(const SceneValue& value, const Surface& surface, const std::string& what) {
+  const MovingSurface still{surface.points, surface.points, surface.triangles};
+  const Certificate certificate = certify({&still, 1});
+  if (certificate.pairs.empty()) return;
+  const auto [a, b] = certificate.pairs.front().triangles;
+  value.fail(what + " intersects itself, in triangles " + std::to_string(a) + " and " +
+             std::to_string(b) + " and " + std::to_string(certificate.pairs.size() - 1) +
+             " other pairs");
+}
+
 /// A mesh of tetrahedra or else of triangles.
 Geometry read_either(const std::string& path, SceneFiles& files) {
   try {
@@ -146,8 +169,12 @@ void read_mesh_key(const SceneValue& value, SceneFiles& files, Body& into) {
   } else {
     into.geometry = Surface{};
   }
-  files.add(file, [path, &files, &into] {
-    if (into.kind == BodyKind::fem) {
+  files.add(file, [file, path, &files, &into] {
+    if (into.lattice) {
+      Surface surface = files.read_triangles(path);
+      check_simple(file, surface, "the surface");
+      into.geometry = std::move(surface);
+    } else if (into.kind == BodyKind::fem) {
       into.geometry = files.read_mesh(path);
     } else if (into.kind == BodyKind::scripted) {
       into.geometry = read_either(path, files);
@@ -182,7 +209,7 @@ Sheet read_sheet(const SceneValue& value) {
 void read_geometry(SceneObject& object, SceneFiles& files, Body& into) {
   int count = 0;
   if (const auto shape = object.find("shape")) {
-    into.geometry = read_shape(*shape);
+    read_shape(*shape, files, into);
     ++count;
   }
   if (const auto volume = object.find("volume")) {
@@ -212,6 +239,7 @@ void read_lattice(SceneObject& object, Body& into) {
   if (const auto tets = keys.find("tets")) lattice.tets = tets->whole(1);
   keys.finish();
   into.lattice = lattice;
+  if (std::holds_alternative<Mesh>(into.geometry)) into.geometry = Surface{};  // of its file
 }
 
 void read_surface_file(const SceneValue& value,
@@ -221,19 +249,52 @@ void read_surface_file(const SceneValue& value,
   files.add(value, [path, &files, store = std::move(store)] { store(files.read_triangles(path)); });
 }
 
+namespace {
+/// Of the box around all points.
+double diagonal_of(const Surface& surface) {
+  Bounds box;
+  for (const Point3& point : surface.points) box.include(point);
+  return norm(minus(box.high, box.low));
+}
+
+/// Puts a coarser copy of the body's mesh in the place of its surface.
+void read_distance(const SceneValue& value, SceneFiles& files, Body& into) {
+  const double distance = value.number();
+  if (!(distance > 0)) value.fail("expected a length above 0");
+  files.add(value, [value, distance, &into] {
+    const auto* fine = std::get_if<Surface>(&into.geometry);
+    if (fine == nullptr || !into.lattice) {
+      value.fail("is only for bodies of a mesh of triangles with a lattice, remove it");
+    }
+    const double size = diagonal_of(*fine);
+    if (!(distance <= most_distance * size)) {
+      value.fail("is too coarse: expected at most a tenth of the body's size, " +
+                 SceneJson(most_distance * size).dump());
+    }
+    Surface coarse = coarse_surface(value.place(), *fine, distance);
+    check_simple(
+        value, coarse,
+        "is too coarse: the surface of " + std::to_string(coarse.triangles.size()) + " triangles");
+    into.surface = std::move(coarse);
+  });
+}
+}  // namespace
+
 void read_surface_choice(SceneObject& object, SceneFiles& files, Body& into) {
   const auto value = object.find("surface");
   if (!value) return;
   SceneObject keys(*value);
   const auto triangles = keys.find("triangles");
   const auto mesh = keys.find("mesh");
-  if (triangles.has_value() == mesh.has_value()) {
-    value->fail("expected either triangles or mesh");
+  const auto distance = keys.find("distance");
+  if (triangles.has_value() + mesh.has_value() + distance.has_value() != 1) {
+    value->fail("expected one of triangles, mesh and distance");
   }
   if (triangles) into.surface = triangles->whole(4);
   if (mesh) {
     read_surface_file(*mesh, files, [&into](Surface read) { into.surface = std::move(read); });
   }
+  if (distance) read_distance(*distance, files, into);
   keys.finish();
 }
 

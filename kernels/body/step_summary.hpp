@@ -14,7 +14,7 @@ namespace tetwarp {
 /// A reduction of the state: a sum and a maximum.
 struct StateCheck {
   double undefined = 0;     ///< numbers that are infinite or undefined
-  double largest_spin = 0;  ///< angular velocity of a rigid body [rad/s]
+  double largest_spin = 0;  ///< angular velocity of a rigid body whose spin counts [rad/s]
 
   TETWARP_HD StateCheck& operator+=(const StateCheck& other) {
     undefined += other.undefined;
@@ -29,7 +29,7 @@ struct StateCheckOp {
   View<const double> velocity;  ///< [blocks][3]
   RigidPlaces rigid;
   View<const double> angular_momentum;  ///< [rigid][3]
-  View<const double> moments;           ///< [rigid][3] principal; prescribed bodies: 0
+  View<const double> moments;           ///< [rigid][3] principal; 0: its spin does not count
 
   TETWARP_HD static double undefined_of(const double* x, int count) {
     double sum = 0;

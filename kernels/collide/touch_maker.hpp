@@ -67,6 +67,11 @@ class TouchMaker {
     return norm(way) > least_way * norm(apart_) ? dot(apart_, way) : 0;
   }
 
+  /// After make(): whether the nearest points lie beyond each other at the start, along the normal.
+  /// Surfaces do not cross there, so that one has come to the other's back by then: the touch would
+  /// hold it there.
+  TETWARP_ANY_EXEC bool is_from_behind() const { return apart_at_start_ < 0; }
+
   /// After make(): the distance of the features at the time of the touch if both sides were moved.
   TETWARP_ANY_EXEC double distance_moved(const Vec3& move_a, const Vec3& move_b) const {
     Vec3 x[4];
@@ -337,6 +342,7 @@ class TouchMaker {
       touch_.weight_b[k] = b_.weight[k];
     }
     const double apart = dot(touch_.normal, minus(touch_.point_a, touch_.point_b));
+    apart_at_start_ = apart;
     touch_.gap = apart - view_.thickness;
     // Surfaces that are apart at the start have no negative gap, however far the normal turns until
     // the hit.
@@ -379,6 +385,7 @@ class TouchMaker {
   Vec3 origin_{};
   Vec3 hit_a_{}, hit_b_{};  ///< relative to origin_, without radii
   Vec3 apart_{}, otherwise_{{0, 0, 1}};
+  double apart_at_start_ = 0;  ///< along the normal, without radii
   Vec3 direction_{{0, 0, 1}};  ///< unit, between the nearest points: the normal before it leans
 };
 

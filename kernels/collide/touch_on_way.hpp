@@ -12,6 +12,7 @@ struct TouchOnWay {
   PairTouch touch;
   double time = 0;
   double opening = 0;  ///< see TouchMaker
+  bool is_from_behind = false;
 };
 
 TETWARP_ANY_EXEC inline TouchOnWay touch_at(const FeatureTouch& pair,
@@ -20,7 +21,7 @@ TETWARP_ANY_EXEC inline TouchOnWay touch_at(const FeatureTouch& pair,
                                             const TouchView& view) {
   const FeatureTouch at{pair.pair, time > 0 ? time : 2, pair.start_distance};
   TouchMaker maker(at, pass, view);
-  TouchOnWay result{maker.make(), time, maker.opening()};
+  TouchOnWay result{maker.make(), time, maker.opening(), maker.is_from_behind()};
   result.touch.counts = maker.is_nearest();
   return result;
 }
@@ -28,7 +29,8 @@ TETWARP_ANY_EXEC inline TouchOnWay touch_at(const FeatureTouch& pair,
 /// The touch at the start. Where its normal turns while the features pass each other, the touch at
 /// the time at which they are nearest, since it is there that they would press: of two convex edges
 /// that pass over each other, the normal of the start would stop the motion. That time is found by
-/// regula falsi with Illinois weights (Dowell and Jarratt 1971).
+/// regula falsi with Illinois weights (Dowell and Jarratt 1971). Where one side has come to the
+/// other's back by then, through its surface beside this pair, the touch at the start remains.
 TETWARP_ANY_EXEC inline TouchOnWay touch_on_way(const FeatureTouch& pair,
                                                 std::int32_t pass,
                                                 const TouchView& view) {
@@ -51,7 +53,7 @@ TETWARP_ANY_EXEC inline TouchOnWay touch_on_way(const FeatureTouch& pair,
     (is_low ? opening_low : opening_high) = last.opening;
     if (step > 0 && is_low == was_low) (is_low ? opening_high : opening_low) /= 2;
   }
-  return last;
+  return last.is_from_behind ? first : last;
 }
 
 }  // namespace tetwarp

@@ -75,12 +75,14 @@ struct AndersonState {
     if (!is_finite) restart();
   }
 
- private:
+  /// What follows does not depend on earlier steps.
   TETWARP_HD void restart() {
     depth = 0;
     has_last = false;
     newest = -1;
   }
+
+ private:
   TETWARP_HD void add_to_gram() {
     depth = min_of(depth + 1, window);
     for (int k = 0; k < depth; ++k) gram[k][newest] = gram[newest][k] = sums.value[k];
@@ -104,6 +106,12 @@ struct AndersonState {
 struct AndersonDecideOp {
   AndersonState* state;
   TETWARP_HD void operator()(std::int64_t) const { state->decide(); }
+};
+
+/// A single index: forgets the steps so far.
+struct AndersonForgetOp {
+  AndersonState* state;
+  TETWARP_HD void operator()(std::int64_t) const { state->restart(); }
 };
 
 template <class Exec>
@@ -239,6 +247,7 @@ class AndersonMixer {
     return exec_.load_without_sync(&state_->action, AndersonState::Action::combine) !=
            AndersonState::Action::keep;
   }
+  TETWARP_ANY_EXEC void forget() { exec_.once("contact/mix", AndersonForgetOp{state_}); }
 
  private:
   Exec& exec_;

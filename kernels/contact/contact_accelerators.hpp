@@ -6,6 +6,7 @@
 ///     observe(x, image)  records image = g(x)
 ///     defect()           norm of image - x at the last observe(); on a device this synchronizes
 ///     advance(x, image)  may replace image by an accelerated x; returns whether it may have
+///     forget()           what follows does not depend on what was observed
 ///
 /// All decisions of an accelerator are computed in memory of the executor, without synchronizing.
 #pragma once
@@ -42,6 +43,7 @@ class PlainSteps {
   }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&sums_->value[0])); }
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T>) { return false; }
+  TETWARP_ANY_EXEC void forget() {}
 
  private:
   Exec& exec_;
@@ -72,6 +74,12 @@ class ConjugateDirection {
       state->ratio = state->is_restart ? 0 : square / state->last;
       state->last = square;
     }
+  };
+
+  /// A single index: the next step is a restart.
+  struct ForgetOp {
+    State* state;
+    TETWARP_HD void operator()(std::int64_t) const { state->last = 0; }
   };
 
   struct AdvanceOp {
@@ -112,6 +120,7 @@ class ConjugateDirection {
     exec_.for_runs("contact/mix", image.size, AdvanceOp{state_, x, image, direction_});
     return true;
   }
+  TETWARP_ANY_EXEC void forget() { exec_.once("contact/mix", ForgetOp{state_}); }
 
  private:
   Exec& exec_;

@@ -49,6 +49,7 @@ CoupledControl::Next iterate_coupled(Problem& problem,
       outcome.residual = control.residual();
       if (control.is_best()) problem.keep(control.residual());
       if (next != Next::proceeds) return next;
+      if (control.has_grown()) accelerator.forget();
     }
     const Next limit = problem.limit(outcome);
     if (limit != Next::proceeds) return limit;
@@ -57,6 +58,8 @@ CoupledControl::Next iterate_coupled(Problem& problem,
     if (control.mixes()) {
       accelerator.observe(problem.now(), problem.image());
       accelerator.advance(problem.now(), problem.image());
+    } else {
+      accelerator.forget();
     }
     problem.take_image();
   }

@@ -108,6 +108,36 @@ TEST(StepTouches, TheNearestPartsOfTwoBodiesAreAlwaysChosen) {
   }
 }
 
+/// Surfaces do not cross at the start. A normal along which a point lies beyond the other surface
+/// there would hold it on the wrong side, against all other contacts around it.
+TEST(StepTouches, NoPairThatIsNearAtTheStartIsTouchedFromBehind) {
+  const double h = 2e-3;
+  std::int64_t near = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> noise(-0.4 * h, 0.4 * h);
+    CollideScene scene;
+    scene.surfaces.thickness = h;
+    scene.add_sheet({0, 0, 0}, 0.05, 6);
+    scene.add_sheet({0.011, 0.017, h}, 0.043, 6);
+    for (Point3& place : scene.motion.start.vertices) {
+      for (double& coordinate : place) coordinate += noise(random);
+    }
+    scene.motion.end = scene.motion.start;
+    scene.move_body(1, {0, 0, -3 * h});
+    for (const std::int32_t body : {0, 1}) scene.shake_body(body, 3 * h, random);
+    const auto detector = make_cpu_detector(scene.surfaces, {});
+    detector->begin_step();
+    detector->find_touches(scene.motion);
+    for (const auto& [touch, area] : detector->touches()) {
+      if (touch.distance >= 2 * h) continue;
+      EXPECT_GE(touch.gap, -h) << seed;
+      ++near;
+    }
+  }
+  EXPECT_GT(near, 100);
+}
+
 TEST(StepTouches, PairsOfBodiesThatStandStillAreLeftOut) {
   const CollideScene scene = mixed_scene(9, 0.02);
   const auto detector = make_cpu_detector(scene.surfaces, {});

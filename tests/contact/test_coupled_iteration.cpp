@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "host/exec/exec_cpu.hpp"
@@ -121,6 +123,32 @@ TEST(CoupledIteration, FailsWhereTheErrorDoesNotShrink) {
   EXPECT_FALSE(outcome.is_stopped);
   EXPECT_LT(outcome.outer_iterations, CoupledControl::most_iterations);
   EXPECT_EQ(problem.best, 3);
+}
+
+/// Writes down what it is asked for: o for observe(), f for forget().
+class NotingSteps : public UnacceleratedSteps {
+ public:
+  using UnacceleratedSteps::UnacceleratedSteps;
+  void observe(View<const double> x, View<const double> image) {
+    notes += 'o';
+    UnacceleratedSteps::observe(x, image);
+  }
+  static void forget() { notes += 'f'; }
+  static std::string notes;
+};
+std::string NotingSteps::notes;
+
+/// Errors that shrink, that grow to 2.5 times in each iteration, and an iteration without mixing.
+TEST(CoupledIteration, ForgetsWhatLedToAnErrorTwiceTheLeast) {
+  for (const auto& [inverse, is_damped, notes] :
+       {std::tuple{0.25, false, "ooo"}, {1.75, false, "ofofof"}, {0.25, true, "foo"}}) {
+    OneEquation problem(inverse);
+    problem.is_damped = is_damped;
+    problem.most = 3;
+    NotingSteps::notes.clear();
+    solve_coupled<NotingSteps>(problem);
+    EXPECT_EQ(NotingSteps::notes, notes);
+  }
 }
 
 TEST(CoupledIteration, EndsAtALimitWithTheBestSoFar) {

@@ -99,6 +99,18 @@ TEST(SimulatorEmulated, StepsAllocateNothing) {
   EXPECT_EQ(take_calls().count(DeviceCall::allocate), 0);
 }
 
+/// The device tells which spins a step must resolve.
+TEST(SimulatorEmulated, SpinsOfBallsDivideNoSteps) {
+  for (const Point3& radii : {Point3{0.1, 0.1, 0.1}, Point3{0.1, 0.1, 0.11}}) {
+    Body ball = rigid_box("ball", {0.1, 0.1, 0.1}, {0, 0, 0});
+    ball.geometry = Shape{EllipsoidShape{radii}};
+    ball.angular_velocity = {0, 0, 150};
+    Simulator simulator(scene_of({ball}, 0.01), on(Backend::cuda));
+    simulator.step();
+    EXPECT_EQ(simulator.record().substeps, radii[2] == 0.1 ? 1 : 4);
+  }
+}
+
 /// The whole state is copied once, however much of it is asked for.
 TEST(SimulatorEmulated, TheStateIsCopiedWhenItIsReadFirst) {
   Simulator simulator(tied_bodies(), on(Backend::cuda));

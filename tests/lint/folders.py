@@ -96,7 +96,7 @@ ALLOWED = {
     "io/import": ["io/child", "io/volume", "io/nifti", "io/h5", "io/files", *IO],
     "io/points": ["io/import", "io/vtkhdf", "io/h5", "io/files", *IO],
     "io/reader": ["io/child", "io/import", "io/image", "io/volume", "io/files", *IO],
-    "io/scene": ["io/files", *IO],
+    "io/scene": ["io/import", "io/files", *IO],
     "io/transforms": ["io/nifti", "io/h5", "io/files", *IO],
     "io/picture": ["io/files", *IO],
     "host/view": ["io/tetwarp", "io/files", "host/base", *BASE],
@@ -111,7 +111,7 @@ ALLOWED = {
     "host/cli/warp": ["host/cli/common", "host/cli/job", *CLI],
     "host/cli/simulate": ["host/cli/common", "host/cli/job", "host/view", "io/vtkhdf", *CLI],
     "host/cli/view": ["host/cli/common", "host/view", *CLI],
-    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", "io/fclib",
+    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", "host/view", "io/fclib",
                        "io/vtkhdf", *CLI],
     "host/cli": ["host/cli/common", *CLI],
 }

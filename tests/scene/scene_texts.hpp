@@ -62,7 +62,17 @@ inline const char* const full_scene = R"({
         "spacing": [0.01, 0.02, 0.03], "origin": [1, 2, 3], "threshold": 0.25},
       "transfer": [{"value": 0, "E": 0, "nu": 0.4, "density": 0},
         {"value": 1, "E": 4e5, "nu": 0.3, "density": 1100}],
-      "fixed": {"label": 1}}
+      "fixed": {"label": 1}},
+    {"name": "bone", "kind": "rigid", "density": 2000, "surface": {"triangles": 400},
+      "shape": {"type": "loft", "tubes": [
+        {"stations": [{"center": [0, 0, 0], "radii": [0.1, 0.2], "direction": [0, 1, 0]},
+          {"center": [1, 0, 0], "radii": [0.1, 0.2]}], "ends": [0.3, 0.4]},
+        {"stations": [{"center": [0, 0, 5], "radii": [0.1, 0.2]},
+          {"center": [1, 0, 5], "radii": [0.1, 0.1]}]}]}},
+    {"name": "muscle", "kind": "fem", "lattice": {"cells": [6, 2, 2]},
+      "material": {"E": 2e5, "nu": 0.4, "density": 500}, "surface": {"triangles": 400},
+      "shape": {"type": "loft", "stations": [{"center": [0, 0, 0], "radii": [0.1, 0.2]},
+        {"center": [1, 0, 0], "radii": [0.1, 0.2]}]}}
   ],
   "obstacles": [
     {"name": "floor", "plane": {"normal": [0, 0, 2], "point": [0, 0, -9]},

@@ -16,7 +16,8 @@ using Json = nlohmann::ordered_json;
 /// full_scene without its phantom, which takes time to make.
 std::string text_without_volume() {
   Json scene = Json::parse(full_scene);
-  scene["bodies"].erase(scene["bodies"].size() - 1);
+  std::erase_if(scene["bodies"].get_ref<Json::array_t&>(),
+                [](const Json& body) { return body.contains("volume"); });
   return scene.dump(1);
 }
 

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 #include <variant>
+#include <vector>
 
+#include "host/base/point3.hpp"
 #include "tests/scene/scene_texts.hpp"
 
 namespace tetwarp::test {
@@ -139,6 +142,35 @@ TEST(SceneKeys, OfShapes) {
   EXPECT_EQ(strip.sag, -0.008);
   EXPECT_EQ(std::get<PlateShape>(shape(9)).size, (Point3{0.1, 0.12, 0.012}));
   EXPECT_EQ(std::get<CylinderShape>(shape(10)).length, 2);
+}
+
+/// Elliptical cylinders with ends: pi a b (length + 2/3 of both ends).
+TEST(SceneKeys, OfLofts) {
+  const Body &bone = full().bodies[12], &muscle = full().bodies[13];
+  const double area = std::numbers::pi * 0.1 * 0.2;
+  const auto& bones = std::get<Surface>(bone.geometry);
+  Bounds bounds;
+  for (const Point3& x : bones.points) bounds.include(x);
+  EXPECT_NEAR(bounds.low[0], -0.3, 1e-12);  // the end of the first tube
+  EXPECT_NEAR(bounds.high[0], 1.4, 1e-12);
+  EXPECT_NEAR(bounds.low[2], -0.2, 0.03);  // the second radius of the first tube
+  EXPECT_NEAR(bounds.high[1], 0.1, 0.03);
+  EXPECT_NEAR(double(bones.triangles.size()), 400, 80);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(bone.surface));
+
+  const auto& mesh = std::get<Mesh>(muscle.geometry);
+  EXPECT_EQ(mesh.tets.size(), 120U);
+  EXPECT_FALSE(muscle.lattice);
+  double volume = 0;
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const std::vector<Point3>& x = mesh.rest_positions;
+    volume += tet_volume(at(x, a), at(x, b), at(x, c), at(x, d));
+  }
+  // The tetrahedra around the tube have its mass, and of its stiffness as much.
+  const double exact = area * (1 + 2 / 3. * (0.1 + 0.1));
+  EXPECT_NEAR(muscle.material.density * volume / (500 * exact), 1, 1e-12);
+  EXPECT_NEAR(muscle.material.youngs_modulus * volume / (2e5 * exact), 1, 1e-12);
+  EXPECT_NEAR(double(std::get<Surface>(muscle.surface).triangles.size()), 400, 80);
 }
 
 TEST(SceneKeys, OfAPhantomAndATransferTable) {

@@ -159,6 +159,14 @@ void declare_outside_options(CLI::App& app, WarpOptions& warp) {
       ->type_name("V");
 }
 
+void declare_extra_outputs(CLI::App& app, ExtraChoice& extra) {
+  add_word_list(
+      app, "--outputs", extra_choices(), [&extra](std::size_t output) { extra.insert(output); },
+      "extra arrays tetwarp_mask and so on: covered or not; owning cell; rest minus output "
+      "position; det F; F = d deformed / d rest by rows; Green-Lagrange strain XX YY ZZ XY YZ XZ; "
+      "deformed minus rest position of the source's voxels; 0 (tet: -1) in uncovered voxels");
+}
+
 namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
   app.add_option("FILES", arguments.files,
@@ -222,12 +230,7 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
   add_quantities(app, "--tensors", arguments.quantities, tensor_laws,
                  "array of 6 components XX YY ZZ XY YZ XZ to reorient, repeatable [finite-strain]");
   declare_outside_options(app, warp);
-  ExtraChoice& extra = arguments.extra;
-  add_word_list(
-      app, "--outputs", extra_choices(), [&extra](std::size_t output) { extra.insert(output); },
-      "extra arrays tetwarp_mask and so on: covered or not; owning cell; rest minus output "
-      "position; det F; F = d deformed / d rest by rows; Green-Lagrange strain XX YY ZZ XY YZ XZ; "
-      "deformed minus rest position of the source's voxels; 0 (tet: -1) in uncovered voxels");
+  declare_extra_outputs(app, arguments.extra);
   app.add_flag("--temporal", arguments.temporal, "write all steps to one file");
   app.add_option("--compress", arguments.compress, "deflate level, 0 for none [0; of .nii.gz 6]")
       ->check(between(0, 9))

@@ -64,10 +64,11 @@ void declare_warp_options(CLI::App& app, WarpArguments& arguments);
 
 /// Declare parts of these options, which `tetwarp simulate` has, too: --grid, --dims, --origin,
 /// --spacing and --direction; --filter, --overshoot, --antialias and --intensity; --outside and
-/// --background.
+/// --background; --outputs.
 void declare_grid_options(CLI::App& app, GridChoice& grid);
 void declare_sampling_options(CLI::App& app, WarpOptions& warp);
 void declare_outside_options(CLI::App& app, WarpOptions& warp);
+void declare_extra_outputs(CLI::App& app, ExtraChoice& extra);
 
 /// Throws CLI::ValidationError when filter and antialiasing or intensity contradict each other.
 void check_sampling(const WarpOptions& warp);

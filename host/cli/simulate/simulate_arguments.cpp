@@ -2,9 +2,6 @@
 /// The options of tetwarp simulate, and the checks of their combinations.
 #include "host/cli/simulate/simulate_arguments.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "host/cli/common/declare.hpp"
 #include "host/cli/job/warp_arguments.hpp"
 #include "io/files/extension.hpp"
@@ -81,6 +78,7 @@ void declare_warping(CLI::App& app, SimulateArguments& arguments) {
   declare_grid_options(app, arguments.grid);
   declare_sampling_options(app, arguments.warp);
   declare_outside_options(app, arguments.warp);
+  declare_extra_outputs(app, arguments.extra);
   app.add_option("--compress", arguments.compress,
                  "deflate level of warped volumes, 0 for none [0]")
       ->check(between(0, 9))
@@ -91,16 +89,9 @@ void declare_pictures(CLI::App& app, SimulateArguments& arguments) {
   app.add_flag("--picture", arguments.draws, "draw every output: scene_0000.png ...");
   app.add_option("--film", arguments.film, "write these pictures as an animated GIF")
       ->type_name("FILE.gif");
-  app.add_option_function<std::array<double, 6>>(
-         "--camera",
-         [&arguments](const std::array<double, 6>& camera) { arguments.camera = camera; },
-         "eye and target [those of the scene, or the whole scene at the start]")
-      ->delimiter(',')
-      ->type_name("X,Y,Z,TX,TY,TZ");
-  app.add_option("--pixels", arguments.pixels, "width and height of the pictures [960,640]")
-      ->delimiter(',')
-      ->check(between(16, 4096))
-      ->type_name("W,H");
+  declare_picture_options(app, arguments.pictures,
+                          "those of the scene, or the whole scene at the start",
+                          "draw the volumes of bodies by rays in place of their surfaces");
 }
 
 void declare_running(CLI::App& app, SimulateArguments& arguments) {
@@ -139,16 +130,11 @@ void check_file_options(const SimulateArguments& arguments) {
   }
 }
 
-void check_camera(const SimulateArguments& arguments) {
-  if (!arguments.camera) return;
-  if (!arguments.draws && arguments.film.empty()) refuse("--camera", "needs --picture or --film");
-  const std::array<double, 6>& camera = *arguments.camera;
-  if (!std::ranges::all_of(camera, [](double number) { return std::isfinite(number); })) {
-    refuse("--camera", "a number is not finite");
-  }
-  if (std::equal(camera.begin(), camera.begin() + 3, camera.begin() + 3)) {
-    refuse("--camera", "the eye and what it looks at are the same point");
-  }
+void check_pictures(const SimulateArguments& arguments) {
+  const bool draws = arguments.draws || !arguments.film.empty();
+  if (arguments.pictures.camera && !draws) refuse("--camera", "needs --picture or --film");
+  if (!arguments.pictures.cast.empty() && !draws) refuse("--cast", "needs --picture or --film");
+  check_camera(arguments.pictures);
 }
 }  // namespace
 
@@ -167,8 +153,9 @@ void check_complete(const SimulateArguments& arguments) {
   }
   if (arguments.print) return;
   check_file_options(arguments);
-  check_camera(arguments);
+  check_pictures(arguments);
   check_sampling(arguments.warp);
+  if (!arguments.extra.empty() && !arguments.warps) refuse("--outputs", "needs --warp");
 }
 
 }  // namespace tetwarp::cli

@@ -2,7 +2,6 @@
 /// The arguments of `tetwarp simulate`.
 #pragma once
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +10,8 @@
 #include <tetwarp/simulate.hpp>
 #include <tetwarp/warp.hpp>
 
+#include "host/cli/common/picture_options.hpp"
+#include "host/cli/job/extra_outputs.hpp"
 #include "host/cli/job/output_grid.hpp"
 
 namespace tetwarp::cli {
@@ -36,12 +37,12 @@ struct SimulateArguments {
   bool has_filter = false;  ///< --filter was given
   WarpOptions warp;
   GridChoice grid{"bounds", {}, {}, {}, {}, {}};
+  ExtraChoice extra;  ///< arrays beside the warped ones
   int compress = 0;
 
-  bool draws = false;                           ///< pictures
-  std::string film;                             ///< file; empty: none
-  std::optional<std::array<double, 6>> camera;  ///< eye, target
-  std::array<int, 2> pixels{960, 640};
+  bool draws = false;  ///< pictures
+  std::string film;    ///< file; empty: none
+  PictureOptions pictures;
 
   std::string report;  ///< file; empty: report.json in the folder
   bool quiet = false;

@@ -32,7 +32,7 @@ void link_beside(const fs::path& target, const std::string& name) {
 }  // namespace
 
 BodyFiles::BodyFiles(Simulator& simulator, const std::string& folder, std::int64_t kept_steps)
-    : simulator_(simulator) {
+    : simulator_(simulator), looks_(simulator) {
   const std::vector<Body>& bodies = simulator.scene().bodies;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyMesh& body = simulator.body(b);
@@ -43,6 +43,9 @@ BodyFiles::BodyFiles(Simulator& simulator, const std::string& folder, std::int64
       open(b, Points::nodes, path.string(), kept_steps);
       if (!has_surface) continue;
       open(b, Points::surface, (fs::path(folder) / surface_name).string(), kept_steps);
+      if (looks_.of(b) == nullptr) continue;
+      const std::string look_name = bodies[b].name + ".look.vtkhdf";
+      open(b, Points::look, (fs::path(folder) / look_name).string(), kept_steps);
     } else if (has_surface) {
       open(b, Points::surface, path.string(), kept_steps);
       link_beside(path, surface_name);
@@ -54,12 +57,13 @@ void BodyFiles::open(std::size_t body,
                      Points points,
                      const std::string& path,
                      std::int64_t kept_steps) {
-  const BodyMesh& mesh = simulator_.body(body);
   const std::vector<StepArray> arrays = arrays_of(body, points);
   paths_.push_back(path);
+  const BodyMesh& mesh = simulator_.body(body);
+  const Surface& surface = points == Points::look ? *looks_.of(body) : mesh.surface;
   if (kept_steps >= 0) {
     const std::size_t count =
-        points == Points::nodes ? mesh.mesh.rest_positions.size() : mesh.surface.points.size();
+        points == Points::nodes ? mesh.mesh.rest_positions.size() : surface.points.size();
     files_.push_back({body, points, arrays, StepMeshWriter(path, count, arrays, kept_steps)});
     return;
   }
@@ -67,7 +71,7 @@ void BodyFiles::open(std::size_t body,
   if (fs::is_symlink(path, error)) fs::remove(path, error);  // of an earlier run in this folder
   files_.push_back({body, points, arrays,
                     points == Points::nodes ? StepMeshWriter(path, mesh.mesh, arrays)
-                                            : StepMeshWriter(path, mesh.surface, arrays)});
+                                            : StepMeshWriter(path, surface, arrays)});
 }
 
 bool BodyFiles::has_field(const std::string& name) const {
@@ -76,6 +80,7 @@ bool BodyFiles::has_field(const std::string& name) const {
 
 std::vector<StepArray> BodyFiles::arrays_of(std::size_t body, Points points) const {
   std::vector<StepArray> arrays{{"displacement", false, 3}};
+  if (points == Points::look) return arrays;
   const BodyMesh& mesh = simulator_.body(body);
   const bool is_rigid = mesh.kind == BodyKind::rigid;
   const bool has_velocities = points == Points::nodes || is_rigid ||
@@ -112,15 +117,24 @@ std::vector<double> BodyFiles::values_of(const File& file, const StepArray& arra
   if (array.name == "intensity") return contacts_.at(file.body).intensity;
   if (array.name == "gap") return contacts_.at(file.body).gap;
   if (array.name == "jacobian") return simulator_.cell_jacobians(file.body);
-  const BodyMesh& mesh = simulator_.body(file.body);
-  const bool is_of_nodes = file.points == Points::nodes;
-  const std::vector<Point3>& points = is_of_nodes ? mesh.mesh.rest_positions : mesh.surface.points;
-  std::vector<double> values = flat(is_of_nodes ? simulator_.node_positions(file.body)
-                                                : simulator_.surface_positions(file.body));
+  const std::vector<Point3>& points = rest_points(file);
+  std::vector<double> values = flat(positions_of(file));
   for (std::size_t p = 0; p < points.size(); ++p) {
     for (std::size_t axis = 0; axis < 3; ++axis) values[3 * p + axis] -= points[p][axis];
   }
   return values;
+}
+
+const std::vector<Point3>& BodyFiles::rest_points(const File& file) const {
+  if (file.points == Points::look) return looks_.of(file.body)->points;
+  const BodyMesh& mesh = simulator_.body(file.body);
+  return file.points == Points::nodes ? mesh.mesh.rest_positions : mesh.surface.points;
+}
+
+std::vector<Point3> BodyFiles::positions_of(const File& file) const {
+  if (file.points == Points::look) return looks_.positions(file.body);
+  return file.points == Points::nodes ? simulator_.node_positions(file.body)
+                                      : simulator_.surface_positions(file.body);
 }
 
 void BodyFiles::drop_later() {

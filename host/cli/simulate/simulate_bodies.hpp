@@ -9,11 +9,13 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/cli/simulate/simulate_contacts.hpp"
+#include "host/view/look_surfaces.hpp"
 #include "io/vtkhdf/simulation_mesh.hpp"
 
 namespace tetwarp::cli {
 
-/// A body with tetrahedra has them in NAME.vtkhdf and its triangles in NAME.surface.vtkhdf. A body
+/// A body with tetrahedra has them in NAME.vtkhdf and its triangles in NAME.surface.vtkhdf, with a
+/// finer surface for the eye in NAME.look.vtkhdf. A body
 /// without has its triangles in NAME.vtkhdf, to which NAME.surface.vtkhdf is a link. A body without
 /// geometry has no file.
 class BodyFiles {
@@ -35,7 +37,7 @@ class BodyFiles {
   const std::vector<std::string>& paths() const { return paths_; }
 
  private:
-  enum class Points { nodes, surface };
+  enum class Points { nodes, surface, look };
   struct File {
     std::size_t body;
     Points points;
@@ -49,7 +51,11 @@ class BodyFiles {
   std::vector<Point3> velocities_of(const File& file) const;
   bool has_field(const std::string& name) const;
 
+  const std::vector<Point3>& rest_points(const File& file) const;
+  std::vector<Point3> positions_of(const File& file) const;
+
   Simulator& simulator_;
+  view::LookSurfaces looks_;
   std::vector<File> files_;
   std::vector<std::string> paths_;
   std::size_t kept_bytes_ = 0;

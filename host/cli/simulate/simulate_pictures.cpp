@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <tetwarp/cast.hpp>
 #include <tetwarp/io.hpp>
 
 #include "host/base/stopwatch.hpp"
@@ -13,24 +14,42 @@
 namespace tetwarp::cli {
 
 ScenePictures::ScenePictures(const Simulator& simulator, const SimulateArguments& arguments)
-    : simulator_(simulator), arguments_(arguments) {
-  options_.width = arguments.pixels[0];
-  options_.height = arguments.pixels[1];
+    : simulator_(simulator), arguments_(arguments), looks_(simulator) {
+  options_.width = arguments.pictures.pixels[0];
+  options_.height = arguments.pictures.pixels[1];
   const double aspect = static_cast<double>(options_.width) / options_.height;
-  options_.camera =
-      arguments.camera ? view::camera_at(*arguments.camera) : view::scene_camera(simulator, aspect);
+  options_.camera = arguments.pictures.camera ? view::camera_at(*arguments.pictures.camera)
+                                              : view::scene_camera(simulator, aspect);
   render_surfaces({}, {}, {options_.camera, 1, 1});  // throws on a camera that shows nothing
   if (!arguments.film.empty()) FilmWriter::check_available(arguments.film);
+  if (!arguments.pictures.cast.empty()) transfer_of(arguments.pictures, Grid{{1, 1, 1}}, {0, 1});
 }
 
 void ScenePictures::begin() {
   if (!arguments_.film.empty()) film_.emplace(arguments_.film);
 }
 
-void ScenePictures::draw_frame(std::int64_t frame, double seconds) {
+Image ScenePictures::draw(const std::vector<WarpedBody>& warped) {
+  view::SceneDrawing drawn = view::drawing_of(simulator_, &looks_);
+  if (arguments_.pictures.cast.empty()) {
+    return render_surfaces(drawn.surfaces, drawn.planes, options_);
+  }
+  std::vector<CastVolume> volumes;
+  for (const WarpedBody& body : warped) {
+    const auto [range, is_new] = ranges_.try_emplace(body.source);
+    if (is_new) range->second = finite_range(*body.source);
+    volumes.push_back(
+        {&body.volume, transfer_of(arguments_.pictures, body.source->grid, range->second)});
+    drawn.surfaces[body.body].triangles = {};
+  }
+  return cast_volumes(volumes, drawn.surfaces, drawn.planes, options_);
+}
+
+void ScenePictures::draw_frame(std::int64_t frame,
+                               double seconds,
+                               const std::vector<WarpedBody>& warped) {
   const Stopwatch watch;
-  const view::SceneDrawing drawn = view::drawing_of(simulator_);
-  const Image image = render_surfaces(drawn.surfaces, drawn.planes, options_);
+  const Image image = draw(warped);
   if (arguments_.draws) {
     const std::filesystem::path path =
         std::filesystem::path(arguments_.folder) / fmt::format("scene_{:04}.png", frame);

@@ -67,7 +67,7 @@ void check_files(const SimulateArguments& arguments) {
 bool is_of_body(const std::string& name, const std::string& body) {
   if (!name.starts_with(body + ".")) return false;
   const std::string rest = name.substr(body.size());
-  return rest == ".vtkhdf" || rest == ".surface.vtkhdf" ||
+  return rest == ".vtkhdf" || rest == ".surface.vtkhdf" || rest == ".look.vtkhdf" ||
          (rest.starts_with(".warped_") && rest.ends_with(".vtkhdf"));
 }
 
@@ -84,7 +84,7 @@ void check_results(const SimulateArguments& arguments,
   const fs::path folder = arguments.folder;
   add(folder / "series.h5", "the series of the run", "-o");
   for (const Body& body : scene.bodies) {
-    for (const char* const end : {".vtkhdf", ".surface.vtkhdf"}) {
+    for (const char* const end : {".vtkhdf", ".surface.vtkhdf", ".look.vtkhdf"}) {
       taken.emplace(canonical_path(folder / (body.name + end)),
                     "the file of body '" + body.name + "'");
     }
@@ -169,7 +169,7 @@ SimulateRun::SimulateRun(const SimulateArguments& arguments) : arguments_(argume
   result_.setup_seconds = setup.seconds();
   if (!arguments.restart.empty()) restore();
   series_.emplace(simulator_->scene());
-  if (arguments.warps) warps_.emplace(*simulator_, arguments);
+  if (arguments.warps || !arguments.pictures.cast.empty()) warps_.emplace(*simulator_, arguments);
   if (arguments.draws || !arguments.film.empty()) pictures_.emplace(*simulator_, arguments);
 }
 
@@ -263,7 +263,10 @@ void SimulateRun::write_frame(std::int64_t frame) {
   result_.write_seconds += writing.seconds();
   flush_if_due();  // warps and pictures may take long
   if (warps_) warps_->write_frame(frame);
-  if (pictures_) pictures_->draw_frame(frame, frame_seconds(frame));
+  if (pictures_) {
+    pictures_->draw_frame(frame, frame_seconds(frame),
+                          warps_ ? warps_->warped() : std::vector<WarpedBody>{});
+  }
   ++result_.frames;
 }
 

@@ -7,35 +7,35 @@
 #include <filesystem>
 #include <stdexcept>
 #include <tetwarp/io.hpp>
+#include <utility>
 #include <variant>
 
+#include "host/base/extra_outputs.hpp"
 #include "host/base/stopwatch.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/interrupt.hpp"
 
 namespace tetwarp::cli {
-namespace {
-bool is_equal(const Grid& a, const Grid& b) {
-  return a.dims == b.dims && a.origin == b.origin && a.spacing == b.spacing &&
-         a.direction == b.direction;
-}
-}  // namespace
-
 BodyWarps::BodyWarps(const Simulator& simulator, const SimulateArguments& arguments)
     : simulator_(simulator), arguments_(arguments) {
   const std::vector<Body>& bodies = simulator.scene().bodies;
+  const bool casts = !arguments.pictures.cast.empty();
+  bool any_is_written = false;
   std::vector<std::string> names;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const auto* image = std::get_if<ImageGeometry>(&bodies[b].geometry);
     if (image == nullptr || simulator.body(b).mesh.cell_count() == 0) continue;
-    names.push_back(bodies[b].name);
-    if (!arguments.warped_body.empty() && arguments.warped_body != bodies[b].name) continue;
-    followers_.push_back({b, &image->volume, {}, {}});
+    const std::string& name = bodies[b].name;
+    names.push_back(name);
+    const bool is_written =
+        arguments.warps && (arguments.warped_body.empty() || arguments.warped_body == name);
+    any_is_written |= is_written;
+    if (is_written || casts) followers_.push_back({b, is_written, &image->volume, {}, {}});
   }
-  if (followers_.empty()) {
+  if (followers_.empty() || (arguments.warps && !any_is_written)) {
     const std::string found = names.empty() ? "none is" : "those are " + listed(names);
     throw std::invalid_argument(
-        arguments.scene() + ": --warp: " +
+        arguments.scene() + (arguments.warps ? ": --warp: " : ": --cast: ") +
         (arguments.warped_body.empty() ? "no body" : "no body '" + arguments.warped_body + "'") +
         " made of a volume; " + found);
   }
@@ -64,31 +64,64 @@ void BodyWarps::prepare(Follower& follower) const {
   const Mesh& mesh = simulator_.body(follower.body).mesh;
   const Grid grid = resolve_grid(arguments_.grid, follower.source->grid, mesh,
                                  [&] { return simulator_.node_positions(follower.body); });
-  if (follower.warper && is_equal(grid, follower.grid)) return;
+  if (follower.warper && grid == follower.grid) return;
+  if (arguments_.extra.contains(forward_output) && grid != follower.source->grid) {
+    throw std::invalid_argument(
+        "--outputs forward is on the volume's own grid; add --grid same, leave out --dims, "
+        "--origin, --spacing and --direction");
+  }
   follower.grid = grid;
   follower.warper.emplace(*follower.source, mesh, options_of(follower));
 }
 
+std::vector<Volume> BodyWarps::extra_volumes(const Follower& follower) const {
+  std::vector<Volume> volumes;
+  if (!follower.is_written) return volumes;
+  for (const std::size_t e : arguments_.extra) {
+    const ExtraOutput& output = extra_outputs[e];
+    volumes.push_back(make_volume(follower.grid, output.type, output.components, output.array()));
+  }
+  return volumes;
+}
+
 void BodyWarps::write_frame(std::int64_t frame) {
-  for (Follower& follower : followers_) {
+  warped_.resize(followers_.size());
+  for (std::size_t f = 0; f < followers_.size(); ++f) {
+    Follower& follower = followers_[f];
     const Stopwatch warping;
     prepare(follower);
     const VolumeView source(*follower.source);
     Volume warped =
         make_volume(follower.grid, source.type, source.components, follower.source->name);
+    std::vector<Volume> extra = extra_volumes(follower);
     void* const samples = warped.data.data();
-    follower.warper->step(simulator_.positions(follower.body), {.volumes = {&samples, 1}},
+    WarpTarget target{.volumes = {&samples, 1}};
+    auto array = extra.begin();
+    for (const std::size_t e : arguments_.extra) {
+      if (array != extra.end()) extra_outputs[e].set(target, (array++)->data.data());
+    }
+    follower.warper->step(simulator_.positions(follower.body), target,
                           [](double) { return !is_interrupted(); });
     warp_seconds_ += warping.seconds();
-    const Stopwatch writing;
-    const std::string name = simulator_.scene().bodies[follower.body].name;
-    const std::filesystem::path path = std::filesystem::path(arguments_.folder) /
-                                       fmt::format("{}.warped_{:04}.vtkhdf", name, frame);
-    write_volumes(path.string(), {&warped},
-                  {.compress = arguments_.compress, .background = arguments_.warp.background});
-    paths_.push_back(path.string());
-    write_seconds_ += writing.seconds();
+    if (follower.is_written) write(follower, warped, extra, frame);
+    warped_[f] = {follower.body, follower.source, std::move(warped)};
   }
+}
+
+void BodyWarps::write(const Follower& follower,
+                      const Volume& warped,
+                      const std::vector<Volume>& extra,
+                      std::int64_t frame) {
+  const Stopwatch writing;
+  const std::string name = simulator_.scene().bodies[follower.body].name;
+  const std::filesystem::path path =
+      std::filesystem::path(arguments_.folder) / fmt::format("{}.warped_{:04}.vtkhdf", name, frame);
+  std::vector<const Volume*> volumes{&warped};
+  for (const Volume& volume : extra) volumes.push_back(&volume);
+  write_volumes(path.string(), volumes,
+                {.compress = arguments_.compress, .background = arguments_.warp.background});
+  paths_.push_back(path.string());
+  write_seconds_ += writing.seconds();
 }
 
 }  // namespace tetwarp::cli

@@ -13,8 +13,16 @@
 
 namespace tetwarp::cli {
 
-/// Warps the volumes of bodies by the positions of their nodes and writes NAME.warped_0000.vtkhdf
-/// and so on. Positions are read in the memory of the simulator, host or device.
+/// A volume as its body has deformed it.
+struct WarpedBody {
+  std::size_t body;
+  const Volume* source;  ///< of the scene
+  Volume volume;
+};
+
+/// Warps the volumes of bodies by the positions of their nodes: those of --warp are written to
+/// NAME.warped_0000.vtkhdf and so on, --cast draws all. Positions are read in the memory of the
+/// simulator, host or device.
 class BodyWarps {
  public:
   /// Checks the options by preparing the first warp of each volume.
@@ -22,9 +30,11 @@ class BodyWarps {
   ///                                does not suit its samples
   BodyWarps(const Simulator& simulator, const SimulateArguments& arguments);
 
-  /// Warps and writes the state of the simulator. @throws Cancelled after an interrupt
+  /// Warps the state of the simulator and writes it. @throws Cancelled after an interrupt
   void write_frame(std::int64_t frame);
 
+  /// The volumes of the last frame.
+  const std::vector<WarpedBody>& warped() const { return warped_; }
   /// Files written so far.
   const std::vector<std::string>& paths() const { return paths_; }
   double warp_seconds() const { return warp_seconds_; }
@@ -34,6 +44,7 @@ class BodyWarps {
   /// A body made of a volume.
   struct Follower {
     std::size_t body;
+    bool is_written;
     const Volume* source;  ///< of the scene
     Grid grid;             ///< of the last warp
     std::optional<Warper> warper;
@@ -43,10 +54,17 @@ class BodyWarps {
   /// one.
   void prepare(Follower& follower) const;
   WarpOptions options_of(const Follower& follower) const;
+  /// Arrays of --outputs, zero.
+  std::vector<Volume> extra_volumes(const Follower& follower) const;
+  void write(const Follower& follower,
+             const Volume& warped,
+             const std::vector<Volume>& extra,
+             std::int64_t frame);
 
   const Simulator& simulator_;
   const SimulateArguments& arguments_;
   std::vector<Follower> followers_;
+  std::vector<WarpedBody> warped_;  ///< as followers_
   std::vector<std::string> paths_;
   double warp_seconds_ = 0, write_seconds_ = 0;
 };

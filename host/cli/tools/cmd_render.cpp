@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tetwarp/cast.hpp>
+#include <tetwarp/film.hpp>
 #include <tetwarp/io.hpp>
 #include <tetwarp/make.hpp>
 #include <vector>
@@ -12,82 +14,210 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/picture_options.hpp"
 #include "host/cli/tools/read_array.hpp"
+#include "host/view/scene_look.hpp"
 #include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
 namespace {
 struct RenderArguments {
-  std::string volume;
+  std::vector<std::string> volumes;  ///< a picture of a film each
   std::string beside;
   std::string output;
   std::string array;
   std::string series;
   std::optional<std::int64_t> step;
   RenderOptions render;
+  PictureOptions pictures;
+  double seconds = 0.1;  ///< per picture of a film
   bool quiet = false;
+
+  VolumeReadOptions read_options() const {
+    VolumeReadOptions options;
+    options.series = series;
+    return options;
+  }
+  bool casts() const { return !pictures.cast.empty(); }
+  bool is_film() const { return has_extension(output, ".gif"); }
 };
 
-int run_render(const RenderArguments& arguments) {
-  std::vector<std::string> inputs{arguments.volume};
+/// Draws volumes one after the other, all with the window, colors and camera of the first.
+class VolumePictures {
+ public:
+  explicit VolumePictures(const RenderArguments& arguments) : arguments_(arguments) {
+    if (!arguments.beside.empty())
+      beside_ = read_array(arguments.beside, arguments.array, {}, arguments.read_options());
+  }
+
+  Image draw(const Volume& volume) {
+    if (!arguments_.casts()) return draw_slices(volume);
+    if (!colors_) prepare_rays(volume);
+    const CastVolume cast{&volume, *colors_};
+    return cast_volumes({&cast, 1}, {}, {}, surfaces_);
+  }
+
+ private:
+  Image draw_slices(const Volume& volume) {
+    if (!window_) window_ = with_window(volume, arguments_.render);
+    std::vector<const Volume*> rows{&volume};
+    if (beside_) rows.push_back(&*beside_);
+    return render(rows, *window_);
+  }
+
+  void prepare_rays(const Volume& volume) {
+    const auto [low, high] = finite_range(volume);
+    colors_ =
+        transfer_of(arguments_.pictures, volume.grid,
+                    {arguments_.render.low.value_or(low), arguments_.render.high.value_or(high)});
+    surfaces_.width = arguments_.pictures.pixels[0];
+    surfaces_.height = arguments_.pictures.pixels[1];
+    if (arguments_.pictures.camera) {
+      surfaces_.camera = view::camera_at(*arguments_.pictures.camera);
+      return;
+    }
+    std::vector<Point3> corners;
+    for (std::size_t c = 0; c < 8; ++c) {
+      Point3 index{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto last = static_cast<double>(volume.grid.dims[axis]) - 0.5;
+        index[axis] = (c >> axis & 1) != 0 ? last : -0.5;
+      }
+      corners.push_back(volume.grid.world_of(index));
+    }
+    surfaces_.camera = camera_of(corners, static_cast<double>(surfaces_.width) / surfaces_.height);
+  }
+
+  const RenderArguments& arguments_;
+  std::optional<Volume> beside_;
+  std::optional<RenderOptions> window_;
+  std::optional<TransferFunction> colors_;
+  SurfaceRenderOptions surfaces_;
+};
+
+void check_files(const RenderArguments& arguments) {
+  std::vector<std::string> inputs = arguments.volumes;
   if (!arguments.beside.empty()) inputs.push_back(arguments.beside);
   for (const std::string& input : inputs) {
-    check_volume(input, "usage: tetwarp render VOLUME -o FILE.png");
+    check_volume(input, "usage: tetwarp render VOLUME... -o FILE.png|FILE.gif");
   }
-  if (!has_extension(arguments.output, ".png")) {
-    throw IoError(arguments.output, "", "the name of a picture ends in .png");
+  if (!arguments.is_film() && !has_extension(arguments.output, ".png")) {
+    throw IoError(arguments.output, "",
+                  "the name of a picture ends in .png, that of a film in .gif");
+  }
+  if (!arguments.is_film() && arguments.volumes.size() > 1) {
+    throw IoError(arguments.output, "",
+                  fmt::format("is a picture, of one volume, not of {}; name a film, .gif",
+                              arguments.volumes.size()));
   }
   check_output_file(arguments.output, inputs);
   check_series(arguments.series, inputs);
-  VolumeReadOptions read;
-  read.series = arguments.series;
-  std::vector<Volume> volumes;
-  volumes.reserve(inputs.size());
-  for (const std::string& input : inputs) {
-    volumes.push_back(read_array(input, arguments.array, arguments.step, read));
+  if (arguments.is_film()) FilmWriter::check_available(arguments.output);
+}
+
+/// A picture of every volume and, without --step, of every step.
+int make_film(const RenderArguments& arguments) {
+  VolumePictures pictures(arguments);
+  FilmWriter film(arguments.output);
+  std::size_t count = 0;
+  std::optional<Image> first;
+  for (const std::string& path : arguments.volumes) {
+    const auto steps =
+        static_cast<std::int64_t>(read_volume_header(path, arguments.read_options()).times.size());
+    const std::int64_t last =
+        arguments.step ? *arguments.step + 1 : std::max<std::int64_t>(steps, 1);
+    for (std::int64_t step = arguments.step.value_or(0); step < last; ++step, ++count) {
+      const Image image =
+          pictures.draw(read_array(path, arguments.array, step, arguments.read_options()));
+      if (!first) first = image;
+      if (image.width != first->width || image.height != first->height) {
+        throw IoError(path, "",
+                      fmt::format("its picture has {} x {} pixels, that of the first volume {} x "
+                                  "{}; give volumes on one grid, as by --grid",
+                                  image.width, image.height, first->width, first->height));
+      }
+      film.append(image, arguments.seconds);
+    }
   }
-  std::vector<const Volume*> rows;
-  rows.reserve(volumes.size());
-  for (const Volume& volume : volumes) rows.push_back(&volume);
-  const Image image = render(rows, arguments.render);
+  film.finish();
+  if (!arguments.quiet) {
+    fmt::print("{} pictures of {} x {} pixels: {}\n", count, first->width, first->height,
+               arguments.output);
+  }
+  return 0;
+}
+
+int run_render(const RenderArguments& arguments) {
+  check_files(arguments);
+  if (arguments.is_film()) return make_film(arguments);
+  VolumePictures pictures(arguments);
+  const Image image = pictures.draw(read_array(arguments.volumes.front(), arguments.array,
+                                               arguments.step, arguments.read_options()));
   write_png(arguments.output, image);
   if (arguments.quiet) return 0;
   fmt::print("{} x {} pixels: {}\n", image.width, image.height, arguments.output);
   return 0;
+}
+
+void check_options(const RenderArguments& arguments) {
+  check_camera(arguments.pictures);
+  if (arguments.casts() && !arguments.beside.empty()) {
+    throw CLI::ValidationError("--beside", "is of slices; leave out --cast");
+  }
+  if (!arguments.casts() && arguments.pictures.camera) {
+    throw CLI::ValidationError("--camera", "needs --cast");
+  }
 }
 }  // namespace
 
 void add_render_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command =
-      add_subcommand(app, "render", "Draw middle slices and a maximum-intensity projection",
-                     "VOLUME -o FILE.png [options]",
-                     "  tetwarp render ct.nii.gz --beside warped.nii.gz -o compare.png\n");
-  command->add_option("VOLUME", arguments->volume, "volume, VTKHDF or NIfTI")
+      add_subcommand(app, "render",
+                     "Draw middle slices and a maximum-intensity projection, or rays through a "
+                     "volume; several volumes as a film",
+                     "VOLUME... -o FILE.png|FILE.gif [options]",
+                     "  tetwarp render ct.nii.gz --beside warped.nii.gz -o compare.png\n"
+                     "  tetwarp render ct.nii.gz --cast -o rays.png\n");
+  command->add_option("VOLUME", arguments->volumes, "volumes, VTKHDF or NIfTI; of a film several")
       ->required()
       ->type_name("");
-  command->add_option("-o,--output", arguments->output, "picture to write")
+  command->add_option("-o,--output", arguments->output, "picture or film to write")
       ->required()
-      ->type_name("FILE.png");
+      ->type_name("FILE.png|FILE.gif");
   command->add_option("--beside", arguments->beside, "second volume, drawn with the same window")
       ->type_name("VOLUME");
   command->add_option("--array", arguments->array, "array to draw [active scalars]")
       ->type_name("NAME");
   add_series(*command, arguments->series);
-  command->add_option("--step", arguments->step, "step of volume files with several steps [0]")
+  command
+      ->add_option("--step", arguments->step,
+                   "step of volume files with several steps [0; of a film all]")
       ->check(at_least(0))
       ->type_name("N");
-  command->add_option("--low", arguments->render.low, "value drawn black [1st percentile]")
+  command
+      ->add_option("--low", arguments->render.low,
+                   "value drawn black [1st percentile; with --cast the lowest]")
       ->check(finite_number())
       ->type_name("V");
-  command->add_option("--high", arguments->render.high, "value drawn white [99.5th percentile]")
+  command
+      ->add_option("--high", arguments->render.high,
+                   "value drawn white [99.5th percentile; with --cast the highest]")
       ->check(finite_number())
       ->type_name("V");
   command->add_option("--height", arguments->render.height, "height of a panel, in pixels [360]")
       ->check(between(16, 4096))
       ->type_name("N");
+  declare_picture_options(*command, arguments->pictures, "from the front, the right and above",
+                          "draw the volume by rays instead of slices");
+  command->add_option("--seconds", arguments->seconds, "time of each picture of a film [0.1]")
+      ->check(above_zero())
+      ->type_name("S");
   add_quiet(*command, arguments->quiet);
-  command->callback([arguments, &run] { run = [arguments] { return run_render(*arguments); }; });
+  command->callback([arguments, &run] {
+    check_options(*arguments);
+    run = [arguments] { return run_render(*arguments); };
+  });
 }
 
 }  // namespace tetwarp::cli

@@ -24,8 +24,8 @@ void check_geometry_kind(const std::string& place, const Body& body) {
   const bool is_solid = is<Shape>(body) || is<ImageGeometry>(body);
   switch (body.kind) {
     case BodyKind::fem:
-      if (is_solid || is<Mesh>(body)) return;
-      fail_at(place, "a fem body needs a shape, a volume or a mesh of tetrahedra");
+      if (is_solid || is<Mesh>(body) || is<Surface>(body)) return;
+      fail_at(place, "a fem body needs a shape, a volume or a mesh");
     case BodyKind::rigid:
       if (is_solid || is<Surface>(body)) return;
       fail_at(place, "a rigid body needs a shape, a volume or a mesh of triangles");

@@ -121,6 +121,7 @@ void check_one(const std::string& body_place, const Sheet& sheet) {
   }
   if (std::abs(dot) > 1e-6) fail_at(axes, "are not at right angles, correct one of them");
 }
+}  // namespace
 
 void check_lattice(const std::string& place, const Lattice& lattice) {
   if (lattice.cells.has_value() + lattice.edge.has_value() + lattice.tets.has_value() != 1) {
@@ -141,7 +142,6 @@ void check_lattice(const std::string& place, const Lattice& lattice) {
     fail_at(key_of(place, "cells"), "2^31 or more tetrahedra; use fewer cells");
   }
 }
-}  // namespace
 
 void check_surface(const std::string& place, const Surface& surface) {
   if (surface.triangles.empty()) fail_at(place, "holds no triangle");
@@ -169,8 +169,10 @@ void check_geometry(const std::string& place, const Body& body) {
   std::visit([&](const auto& geometry) { check_one(place, geometry); }, body.geometry);
   if (body.lattice) {
     if (!std::holds_alternative<Shape>(body.geometry) &&
-        !std::holds_alternative<ImageGeometry>(body.geometry)) {
-      fail_at(key_of(place, "lattice"), "is only for bodies of a shape or volume, remove it");
+        !std::holds_alternative<ImageGeometry>(body.geometry) &&
+        !std::holds_alternative<Surface>(body.geometry)) {
+      fail_at(key_of(place, "lattice"),
+              "is only for bodies of a shape, a volume or a closed surface, remove it");
     }
     check_lattice(key_of(place, "lattice"), *body.lattice);
   }

@@ -3,6 +3,7 @@
 #include "host/simulate/run/host_state.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
@@ -10,8 +11,15 @@
 
 namespace tetwarp {
 
-HostState::HostState(const Model& model, BodyStepper& stepper, ResidentState* resident)
-    : model_(model), stepper_(stepper), resident_(resident), state_(model.start) {
+HostState::HostState(const Model& model,
+                     std::vector<Point3> moments,
+                     BodyStepper& stepper,
+                     ResidentState* resident)
+    : model_(model),
+      moments_(std::move(moments)),
+      stepper_(stepper),
+      resident_(resident),
+      state_(model.start) {
   largest_spin_ = spin_on_host();
 }
 
@@ -29,7 +37,7 @@ const ModelState& HostState::watched() {
 double HostState::spin_on_host() const {
   double largest = 0;
   for (std::int32_t r = 0; r < model_.rigid_count; ++r) {
-    if (at(model_.rigid.mass, r) == 0) continue;
+    if (at(moments_, r)[0] == 0) continue;
     largest = std::max(largest, norm(angular_velocity_of(model_, state_, r)));
   }
   return largest;

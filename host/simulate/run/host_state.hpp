@@ -1,6 +1,8 @@
 /// @file host_state.hpp
 /// HostState: the host's copy of the state of a stepper.
 #pragma once
+#include <vector>
+
 #include "host/simulate/model/model.hpp"
 #include "host/simulate/step/resident_state.hpp"
 #include "host/simulate/step/stepper.hpp"
@@ -12,16 +14,20 @@ namespace tetwarp {
 class HostState {
  public:
   /// @param model     kept by the caller
+  /// @param moments   of turning_moments()
   /// @param stepper   kept by the caller; its state is the start of the model
   /// @param resident  of the stepper, keeps the state on its device; null: every part copies the
   ///                  state to the host
-  HostState(const Model& model, BodyStepper& stepper, ResidentState* resident);
+  HostState(const Model& model,
+            std::vector<Point3> moments,
+            BodyStepper& stepper,
+            ResidentState* resident);
 
   /// The whole state.
   const ModelState& get();
   /// The state with the places that ResidentState::watch() names; others may be older.
   const ModelState& watched();
-  /// Of a rigid body [rad/s].
+  /// Of a rigid body whose turn a step must resolve [rad/s].
   double largest_spin() const { return largest_spin_; }
   /// Before the last part. @pre the stepper keeps no state on a device
   const ModelState& before_part() const { return before_part_; }
@@ -41,6 +47,7 @@ class HostState {
   double spin_on_host() const;
 
   const Model& model_;
+  std::vector<Point3> moments_;
   BodyStepper& stepper_;
   ResidentState* resident_;
   ModelState state_;

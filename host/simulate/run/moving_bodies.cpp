@@ -9,6 +9,7 @@
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 #include "host/base/step_second_fields.hpp"
+#include "host/simulate/run/turning_moments.hpp"
 #include "host/simulate/start/prepare_start.hpp"
 #include "host/simulate/step/device_stepper.hpp"
 #include "host/simulate/step/reference_stepper.hpp"
@@ -28,7 +29,7 @@ MovingBodies::MovingBodies(SimulatedScene& scene,
       growth_(growth ? std::move(*growth) : bring_apart(scene)),
       stepper_(make_stepper()),
       resident_(watch()),
-      state_(scene.model, *stepper_, resident_),
+      state_(scene.model, turning_moments(scene), *stepper_, resident_),
       sleep_(scene, contact_.get(), *stepper_, state_) {}
 
 std::unique_ptr<ContactStep> MovingBodies::make_contact() {
@@ -90,6 +91,7 @@ ResidentState* MovingBodies::watch() {
     list->erase(std::unique(list->begin(), list->end()), list->end());
   }
   device->resident_state().watch(places);
+  device->resident_state().watch_spins(turning_moments(scene_));
   return &device->resident_state();
 }
 

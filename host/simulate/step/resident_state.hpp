@@ -24,6 +24,9 @@ class ResidentState {
   /// Goes back to it.
   virtual void restore() = 0;
   virtual StateCheck check() = 0;
+  /// Sets the principal moments of inertia [kg m^2] of the rigid bodies whose spin check()
+  /// compares, [rigid]; those of others are 0.
+  virtual void watch_spins(const std::vector<Point3>& moments) = 0;
   /// Adds the impulses and the work of the step that has just been made, as add_step().
   virtual void add_sums(const StepInput& input, StepSums& sums) = 0;
   /// Sets what read_watched() reads.

@@ -12,7 +12,6 @@
 
 namespace tetwarp::view {
 namespace {
-constexpr double opacity_lengths = 200;  // in the diagonal of a volume, for ColorPoint::opacity
 constexpr int gray_levels = 256, clear_levels = 8;  // of slices; the darkest are clear
 }  // namespace
 
@@ -62,8 +61,8 @@ void VolumeActors::color(Drawn& drawn) {
   drawn.opacity->RemoveAllPoints();
   for (const ColorPoint& point : drawn.colors.points()) {
     const auto& [red, green, blue] = point.color;
-    drawn.color->AddRGBPoint(point.sample, red, green, blue);
-    drawn.opacity->AddPoint(point.sample, point.opacity);
+    drawn.color->AddRGBPoint(point.value, red, green, blue);
+    drawn.opacity->AddPoint(point.value, point.opacity);
   }
   const std::array<double, 2> gray = drawn.colors.gray();
   drawn.gray->SetTableRange(gray.data());
@@ -85,8 +84,7 @@ void VolumeActors::show(LiveFrame& frame) {
       drawn.samples->Modified();
       drawn.image->Modified();
       space_rays(drawn);
-      drawn.rays->GetProperty()->SetScalarOpacityUnitDistance(drawn.image->GetLength() /
-                                                              opacity_lengths);
+      drawn.rays->GetProperty()->SetScalarOpacityUnitDistance(preset_length(grid));
       for (std::size_t axis = 0; axis < 3; ++axis) {
         drawn.slice_mappers[axis]->SetSliceNumber(static_cast<int>(grid.dims[axis] / 2));
       }
@@ -116,6 +114,13 @@ void VolumeActors::show_look(Drawn& drawn) {
   drawn.rays->SetVisibility(drawn.has_samples && look_ == VolumeLook::rays);
   for (auto& slice : drawn.slices) {
     slice->SetVisibility(drawn.has_samples && look_ == VolumeLook::slices);
+  }
+}
+
+void VolumeActors::set_curve(const std::vector<ColorPoint>& curve) {
+  for (Drawn& drawn : drawn_) {
+    drawn.colors.set_curve(curve);
+    color(drawn);
   }
 }
 

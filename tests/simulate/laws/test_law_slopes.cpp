@@ -16,6 +16,7 @@ struct Ride {
   double time = 0;
   bool converged = true;
   std::int64_t clamped = 0, contacts = 0;
+  std::int64_t parts = 0;  ///< of a step, at most
 };
 
 /// Steps a body that starts on a slope.
@@ -30,6 +31,7 @@ Ride ride(const Body& body, double angle, double friction, double time_step, int
     ride.converged = ride.converged && record.converged;
     ride.clamped += record.clamped_islands;
     ride.contacts = std::max(ride.contacts, record.contacts);
+    ride.parts = std::max<std::int64_t>(ride.parts, record.substeps);
   }
   const BodyRecord& end = simulator.record().bodies[0];
   ride.velocity = end.velocity;
@@ -55,6 +57,23 @@ TEST(BallOnASlope, RollsWithFiveSeventhsOfTheFall) {
     EXPECT_TRUE(end.converged);
     EXPECT_EQ(end.clamped, 0);
     EXPECT_EQ(end.contacts, 1);
+  }
+}
+
+/// Whatever it turns by in a step: nothing that touches turns. It slides until it rolls with
+/// (5 v + 2 r omega) / 7 of the start, as the angular momentum about the floor stays.
+TEST(BallOnAFloor, RollsAfterAnySpinWithoutPartsOfSteps) {
+  for (const double spin : {-40.0, -400.0, 1000.0}) {
+    Body ball = resting_ball();
+    ball.velocity = {1, 0, 0};
+    ball.angular_velocity = {0, spin, 0};
+    const double speed = (5 + 2 * 0.05 * spin) / 7;
+    const Ride end = ride(ball, 0, 2, 8e-3, 150);
+    EXPECT_NEAR(end.velocity[0] / speed, 1, 1e-11) << spin;
+    EXPECT_NEAR(end.turning[1] * 0.05 / speed, 1, 1e-11) << spin;
+    EXPECT_TRUE(end.converged);
+    EXPECT_EQ(end.clamped, 0);
+    EXPECT_EQ(end.parts, 1) << spin;
   }
 }
 

@@ -66,8 +66,9 @@ TEST(SceneLaws, ClothPeelsOffTheWallWhateverItsMesh) {
   }
 }
 
-/// The lips bond while the jaw presses; as it opens, every bond ends, and both sides alike.
-TEST(SceneLaws, MouthOpensSymmetricallyAndLosesAllBonds) {
+/// The lips bond while the jaw presses; as it opens, bonds end on both sides alike, but for those
+/// beside the corners, where the lips are held together.
+TEST(SceneLaws, MouthOpensSymmetricallyAndLosesItsBonds) {
   Scene scene = shipped("mouth");
   scene.solver.linear_tolerance = 1e-9;  // that of the scene lets both sides differ by as much
   Simulator simulator(scene);
@@ -81,10 +82,10 @@ TEST(SceneLaws, MouthOpensSymmetricallyAndLosesAllBonds) {
     }
     EXPECT_GT(record.smallest_distance, 0) << n;
   }
-  EXPECT_GT(bonded, 0.25 * 0.06 * 0.014);
+  EXPECT_GT(bonded, 5e-5);
   EXPECT_LT(asymmetry, 1e-6);
-  EXPECT_EQ(simulator.record().contacts, 0);
-  EXPECT_EQ(simulator.record().adhered_area, 0);
+  EXPECT_LT(simulator.record().contacts, 10);
+  EXPECT_LT(simulator.record().adhered_area, 0.1 * bonded);
 }
 
 /// The first impacts.
@@ -128,28 +129,22 @@ TEST(SceneLaws, ShoulderSettlesUnderItsWeight) {
   EXPECT_NEAR(held / weight, 1, 0.01);
 }
 
-/// The tool presses at six places, half a second each, and lets go of each.
-TEST(SceneLaws, ShoulderIsPalpatedAtSixPlaces) {
+/// Both fingers press the deltoid between them for most of ten seconds.
+TEST(SceneLaws, ShoulderIsPalpatedByTwoFingers) {
   Simulator simulator(shipped("shoulder"));
-  std::int64_t clamped = 0, unconverged = 0;
+  const std::size_t inside = simulator.scene().bodies.size() - 1, outside = inside - 1;
+  ASSERT_EQ(simulator.scene().bodies[inside].name, "finger_inside");
+  int touched = 0;
   for (int n = 1; n <= 2000; ++n) {
     simulator.step();
     const StepRecord& record = simulator.record();
-    clamped += record.clamped_islands;
-    unconverged += !record.converged;
+    EXPECT_TRUE(record.converged) << n;
+    EXPECT_EQ(record.clamped_islands, 0) << n;
     EXPECT_GT(record.smallest_distance, 0) << n;
-    const double force = norm(record.obstacle_forces.at(0));
-    for (const int second : {3, 4, 5, 6, 7, 8}) {
-      if (n == 200 * second + 100) {
-        EXPECT_GT(force, 0.1) << n;
-      }
-      if (n == 200 * second + 200) {
-        EXPECT_EQ(force, 0) << n;
-      }
-    }
+    touched += norm(record.bodies[inside].contact_force) > 0.1 &&
+               norm(record.bodies[outside].contact_force) > 0.1;
   }
-  EXPECT_EQ(clamped, 0);
-  EXPECT_EQ(unconverged, 0);
+  EXPECT_GT(touched, 1000);
 }
 
 }  // namespace

@@ -175,6 +175,21 @@ TEST(Simulator, DividesStepsOfFastSpin) {
   EXPECT_EQ(simulator.time(), 0.01);
 }
 
+/// The turn of a ball is exact and moves nothing, unless a spring holds it off its center.
+TEST(Simulator, DividesStepsOfSpinningBallsOnlyWhereTheyAreHeld) {
+  Body ball = rigid_box("ball", {0.1, 0.1, 0.1}, {0, 0, 0});
+  ball.geometry = Shape{EllipsoidShape{{0.1, 0.1, 0.1}}};
+  ball.angular_velocity = {90, 0, 120};
+  Simulator simulator(scene_of({ball}, 0.01));
+  simulator.step();
+  EXPECT_EQ(simulator.record().substeps, 1);
+  EXPECT_NEAR(norm(simulator.record().bodies[0].angular_velocity), 150, 1e-12);
+
+  simulator.add_handle({.name = "hand", .body = "ball", .center = {0.1, 0, 0}, .stiffness = 1});
+  simulator.step();
+  EXPECT_EQ(simulator.record().substeps, 4);
+}
+
 /// Stiffness over twelve orders, and time steps from 0.01 to 50 ms: finite, and never a larger
 /// energy than at the start.
 TEST(Simulator, IsSoundForAllStiffnesses) {

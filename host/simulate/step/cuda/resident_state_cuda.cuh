@@ -51,11 +51,17 @@ class CudaResidentState final : public ResidentState {
                                view(now_.velocity),
                                {view(now_.center), view(now_.rotation)},
                                view(now_.angular_momentum),
-                               constants_.moments};
+                               view(moments_)};
     exec_.sum_to(label, 0, terms(), body, check_.view().data);
     StateCheck* const result = host_check_.view(1).data;
     exec_.get(view(check_), result);
     return *result;
+  }
+
+  void watch_spins(const std::vector<Point3>& moments) override {
+    const DeviceScope scope = exec_.enter();
+    const View<const double> numbers = numbers_of(moments);
+    exec_.put(numbers.data, numbers.size, moments_);
   }
 
   void add_sums(const StepInput& input, StepSums& sums) override {
@@ -165,6 +171,7 @@ class CudaResidentState final : public ResidentState {
   DeviceVector<SumRun> runs_, of_segments_;
   DeviceVector<ImpulseSums> run_sums_, sums_;
   PinnedBuffer<ImpulseSums> host_sums_;
+  DeviceVector<double> moments_;  ///< of the bodies whose spin counts
   DeviceVector<StateCheck> check_;
   PinnedBuffer<StateCheck> host_check_;
   StatePlaces watched_;

@@ -1,0 +1,229 @@
+"""The scenes that ship, through the command: what a step costs and does, beside the paper's numbers, and
+how results converge with finer meshes and shorter steps.
+
+    python3 bench/simulate/scenes.py build/release/tetwarp RESULTS.json [--only NAME]... [--steps N]
+
+measures the rows whose names begin with a NAME, or all, puts them into RESULTS.json, whose other rows are
+kept, and prints all as tables. Runs take one thread; times are processor times of the whole command, so
+that other work on the machine changes them little. --steps ends runs early. Needs h5py.
+"""
+import argparse
+import datetime
+import json
+import os
+import platform
+import resource
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+COARSE_CANDY = [('"triangles": 5000', '"triangles": 800'), ('"triangles": 1280', '"triangles": 200'),
+                ('"triangles": 320', '"triangles": 80'), ('"cells": [12, 12, 4]', '"cells": [6, 6, 2]'),
+                ('"tets": 475', '"tets": 90')]
+PAPER = {"candy": "151, 531", "candy without adhesion": "97, 330", "shoulder": "65, 153"}
+STAGES = ("forces", "assembly", "linear", "detection", "contact", "update")
+FREE = ["--no-adhesion"]
+
+
+def text_of(tool, name):
+    return subprocess.run([tool, "simulate", "--scene", name, "--print"], check=True, capture_output=True,
+                          text=True).stdout
+
+
+def changed(text, replacements):
+    for old, new in replacements:
+        if old not in text:
+            raise SystemExit(f"the scene no longer holds {old}")
+        text = text.replace(old, new)
+    return json.loads(text)
+
+
+def refined(scene, factor):
+    """Cells along edges times a factor: of lattices, sheets and surfaces."""
+    for body in scene["bodies"]:
+        lattice, sheet = body.get("lattice", {}), body.get("sheet", {})
+        for of in (lattice, sheet):
+            if "cells" in of:
+                of["cells"] = [max(1, round(factor * n)) for n in of["cells"]]
+        if "tets" in lattice:
+            lattice["tets"] = round(factor**3 * lattice["tets"])
+        if "edge" in lattice:
+            lattice["edge"] /= factor
+        if "triangles" in body.get("surface", {}):
+            body["surface"]["triangles"] = round(factor**2 * body["surface"]["triangles"])
+    return scene
+
+
+def rolling(text, time_step, triangles):
+    """One stiff orange at rest on the slope, for 0.8 s."""
+    scene = changed(text, [("[198, 199, 160]", "[66, 66, 54]"),
+                           ("[0.0004, 0.0004, 0.0005]", "[0.0012, 0.0012, 0.0015]")])
+    body = scene["bodies"][0]
+    body["transfer"] = [{"value": 0, "E": 1e7, "nu": 0.4, "density": 1000}]
+    body["surface"] = {"triangles": triangles}
+    body["pose"] = {"position": [0, 0, 0.0388]}
+    scene.update(bodies=[body], time_step=time_step, duration=0.8)
+    return scene
+
+
+def run(tool, scene, options, steps):
+    """The columns of the series by name, the report, and the processor time [s]."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.json")
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(scene, file)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        words = [tool, "simulate", path, "-o", os.path.join(folder, "out"), "--quiet", "--threads", "1"]
+        words += options + (["--steps", str(steps)] if steps else [])
+        done = subprocess.run(words, capture_output=True, text=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if done.returncode not in (0, 3):  # 3: a step stayed above its tolerance
+            raise SystemExit(done.stderr)
+        columns = {}
+        with h5py.File(os.path.join(folder, "out", "series.h5"), "r") as file:
+            file.visititems(lambda name, item: columns.update({name: item[()]}) if isinstance(item, h5py.Dataset)
+                            else None)
+        with open(os.path.join(folder, "out", "report.json"), encoding="utf-8") as file:
+            report = json.load(file)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return columns, report, seconds
+
+
+def step_row(columns, report, seconds):
+    """What steps cost and do."""
+    steps = len(columns["time"]) - 1
+    total = columns["energy/total"] - columns["energy/work"]
+    whole = sum(columns[f"seconds/{stage}"].sum() for stage in STAGES) or 1
+    setup = sum(report["timings"][part] for part in ("read", "setup", "write", "warp", "draw"))
+    share = report["timings"]["step"] / (report["timings"]["step"] + setup)
+    return {"steps": steps, "tetrahedra": sum(body["tetrahedra"] for body in report["bodies"].values()),
+            "triangles": sum(body["triangles"] for body in report["bodies"].values()),
+            "contacts": [float(columns["contacts"].mean()), int(columns["contacts"].max())],
+            "ms": 1e3 * seconds * share / steps,
+            "shares": {stage: float(columns[f"seconds/{stage}"].sum() / whole) for stage in STAGES},
+            "energy": [float(total[0]), float(total[-1]), float(np.diff(total).max())],
+            "passes": [float(columns["contact_passes"][1:].mean()), int(columns["contact_passes"].max())],
+            "clamped": int((columns["clamped_islands"] > 0).sum()),
+            "unconverged": report["unconverged_steps"]}
+
+
+def bond_row(columns, report, seconds):
+    """When bodies touch and part, and what bonds in between."""
+    row = step_row(columns, report, seconds)
+    touching = columns["time"][columns["contacts"] > 0]
+    bonded = columns["time"][columns["adhered_area"] > 0]
+    row.update(first_contact=float(touching[0]) if len(touching) else None,
+               last_bond=float(bonded[-1]) if len(bonded) else None,
+               bonded_cm2=1e4 * float(columns["adhered_area"].max()), work=float(columns["energy/work"][-1]))
+    return row
+
+
+def warp_row(columns, report, seconds):
+    """Frames of all volumes a second of processor time, with the steps between them."""
+    row = step_row(columns, report, seconds)
+    timings = report["timings"]
+    parts = sum(timings[part] for part in ("read", "setup", "step", "write", "warp", "draw"))
+    busy = seconds * (timings["step"] + timings["warp"]) / parts
+    row.update(frames=report["frames"], warp_ms=1e3 * seconds * timings["warp"] / parts / report["frames"],
+               frames_a_second=report["frames"] / busy)
+    return row
+
+
+def roll_row(columns, report, seconds):
+    """Acceleration down the slope over that of a solid ball, from the second half of the run."""
+    row = step_row(columns, report, seconds)
+    half = len(columns["time"]) // 2
+    speed = columns["bodies/orange0/velocity"][half:, 0]
+    row["acceleration"] = float(np.polyfit(columns["time"][half:], speed, 1)[0] / (5 / 7 * 0.51341616))
+    return row
+
+
+def cases(tool):
+    """Name of a row, its scene, options and what is kept of it."""
+    text = {name: text_of(tool, name) for name in
+            ("cantilever", "chain", "sheet", "top", "carps", "torso", "oranges", "cloth", "cloth_peels", "peel", "mouth",
+             "candy", "shoulder")}
+    for name in ("cantilever", "chain", "sheet", "top", "carps", "torso", "oranges", "peel", "shoulder"):
+        yield f"scene/{name}", json.loads(text[name]), [], step_row
+    for name in ("cloth", "cloth_peels", "mouth"):
+        yield f"scene/{name}", json.loads(text[name]), [], bond_row
+        yield f"scene/{name} without adhesion", json.loads(text[name]), FREE, bond_row
+    candy = changed(text["candy"], COARSE_CANDY)
+    candy["duration"] = 4
+    yield "scene/candy", candy, [], bond_row
+    yield "scene/candy without adhesion", candy, FREE, bond_row
+    for name, steps in (("torso", 100), ("oranges", 50), ("carps", 10)):
+        options = ["--warp", "--intensity", "density", "--outputs", "mask", "--steps", str(steps)]
+        yield f"volumes/{name}", json.loads(text[name]), options, warp_row
+    for factor in (0.5, 1, 2):
+        for name in ("cloth", "mouth"):
+            yield f"finer/{name} x {factor}", refined(json.loads(text[name]), factor), [], bond_row
+    for time_step, triangles in ((4e-3, 3200), (2e-3, 3200), (1e-3, 3200), (2e-3, 800), (2e-3, 12800), (5e-4, 12800)):
+        yield (f"roll/{1e3 * time_step:g} ms, {triangles // 2} points", rolling(text["oranges"], time_step, triangles), [],
+               roll_row)
+
+
+def print_tables(rows):
+    print("| scene | steps | tetrahedra | triangles | contacts, mean and most | the paper | ms | linear, contact, detection [%] "
+          "| energy at start and end, largest gain [J] | passes, mean and most | steps with stopped groups, above tolerance |")
+    print("|---" * 11 + "|")
+    for name, row in rows.items():
+        if name.startswith("scene/"):
+            mean, most = row["contacts"]
+            shares = ", ".join(f"{100 * row['shares'][stage]:.0f}" for stage in ("linear", "contact", "detection"))
+            energy = ", ".join(f"{number:.3g}" for number in row["energy"])
+            print(f"| {name[6:]} | {row['steps']} | {row['tetrahedra']} | {row['triangles']} | {mean:.0f}, {most} "
+                  f"| {PAPER.get(name[6:], '')} | {row['ms']:.2g} | {shares} | {energy} "
+                  f"| {row['passes'][0]:.1f}, {row['passes'][1]} | {row['clamped']}, {row['unconverged']} |")
+    print("\n| volumes | frames | a step [ms] | warps of a frame [ms] | frames a second |\n|---|---|---|---|---|")
+    for name, row in rows.items():
+        if name.startswith("volumes/"):
+            print(f"| {name[8:]} | {row['frames']} | {row['ms']:.2g} | {row['warp_ms']:.3g} | {row['frames_a_second']:.2g} |")
+    print("\n| | triangles | contacts, mean and most | first contact [s] | last bond [s] | bonded at most [cm^2] | work [mJ] | ms |")
+    print("|---" * 8 + "|")
+    for name, row in rows.items():
+        if name.startswith("finer/"):
+            mean, most = row["contacts"]
+            last = "" if row["last_bond"] is None else f"{row['last_bond']:.3f}"
+            print(f"| {name[6:]} | {row['triangles']} | {mean:.0f}, {most} | {row['first_contact']:.3f} | {last} "
+                  f"| {row['bonded_cm2']:.4g} | {1e3 * row['work']:.3g} | {row['ms']:.2g} |")
+    print("\n| time step, points | acceleration / (5/7 g sin) | steps with stopped groups | ms |\n|---|---|---|---|")
+    for name, row in rows.items():
+        if name.startswith("roll/"):
+            print(f"| {name[5:]} | {row['acceleration']:.3f} | {row['clamped']} | {row['ms']:.2g} |")
+
+
+def processor():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tool")
+    parser.add_argument("results")
+    parser.add_argument("--only", action="append", default=[])
+    parser.add_argument("--steps", type=int)
+    arguments = parser.parse_args()
+    rows = {}
+    if os.path.exists(arguments.results):
+        with open(arguments.results, encoding="utf-8") as file:
+            rows = json.load(file)["rows"]
+    for name, scene, options, row_of in cases(arguments.tool):
+        if arguments.only and not name.startswith(tuple(arguments.only)):
+            continue
+        rows[name] = row_of(*run(arguments.tool, scene, options, arguments.steps))
+        print(f"{name}: {rows[name]['ms']:.3g} ms a step", file=sys.stderr)
+        version = subprocess.run([arguments.tool, "--version"], capture_output=True, text=True).stdout.strip()
+        with open(arguments.results, "w", encoding="utf-8") as file:
+            json.dump({"context": {"date": datetime.date.today().isoformat(), "processor": processor(),
+                                   "version": version, "threads": 1}, "rows": rows}, file, indent=1)
+            file.write("\n")
+    print_tables(rows)
+
+
+main()

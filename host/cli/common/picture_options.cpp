@@ -1,0 +1,55 @@
+/// @file picture_options.cpp
+/// Cameras, sizes and transfer functions of pictures.
+#include "host/cli/common/picture_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tetwarp/transfer_file.hpp>
+
+#include "host/cli/common/declare.hpp"
+
+namespace tetwarp::cli {
+
+void declare_picture_options(CLI::App& app,
+                             PictureOptions& options,
+                             const std::string& camera,
+                             const std::string& cast) {
+  app.add_option_function<std::array<double, 6>>(
+         "--camera", [&options](const std::array<double, 6>& numbers) { options.camera = numbers; },
+         "eye and target [" + camera + "]")
+      ->delimiter(',')
+      ->type_name("X,Y,Z,TX,TY,TZ");
+  app.add_option("--pixels", options.pixels, "width and height of the pictures [960,640]")
+      ->delimiter(',')
+      ->check(between(16, 4096))
+      ->type_name("W,H");
+  app.add_option_function<std::string>(
+         "--cast",
+         [&options](const std::string& word) { options.cast = word.empty() ? "ct" : word; },
+         cast + ", in the colors of computed tomographies, gray, or as a JSON file says [ct]")
+      ->expected(0, 1)
+      ->type_name("[ct|mr|FILE.json]");
+}
+
+void check_camera(const PictureOptions& options) {
+  if (!options.camera) return;
+  const std::array<double, 6>& camera = *options.camera;
+  if (!std::ranges::all_of(camera, [](double number) { return std::isfinite(number); })) {
+    throw CLI::ValidationError("--camera", "a number is not finite");
+  }
+  if (std::equal(camera.begin(), camera.begin() + 3, camera.begin() + 3)) {
+    throw CLI::ValidationError("--camera", "the eye and what it looks at are the same point");
+  }
+}
+
+TransferFunction transfer_of(const PictureOptions& options,
+                             const Grid& grid,
+                             const std::array<double, 2>& range) {
+  const double length = preset_length(grid);
+  if (options.cast == "ct" || options.cast == "mr") {
+    return {preset_colors(options.cast, range[0], range[1]), length};
+  }
+  return read_transfer_function(options.cast, length);
+}
+
+}  // namespace tetwarp::cli

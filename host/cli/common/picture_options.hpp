@@ -1,0 +1,40 @@
+/// @file picture_options.hpp
+/// Options of pictures in perspective: camera, size, and how volumes are drawn.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <array>
+#include <optional>
+#include <string>
+
+#include <tetwarp/cast.hpp>
+
+namespace tetwarp::cli {
+
+/// As they were given.
+struct PictureOptions {
+  std::optional<std::array<double, 6>> camera;  ///< eye, target
+  std::array<int, 2> pixels{960, 640};
+  /// How volumes are ray-cast: ct, mr, or the name of a file of a transfer function; empty: they
+  /// are not.
+  std::string cast;
+};
+
+/// Declares --camera, --pixels and --cast.
+/// @param camera  what is shown without --camera
+/// @param cast    what --cast does
+void declare_picture_options(CLI::App& app,
+                             PictureOptions& options,
+                             const std::string& camera,
+                             const std::string& cast);
+
+/// Throws CLI::ValidationError on a camera that looks nowhere.
+void check_camera(const PictureOptions& options);
+
+/// The transfer function of --cast for a volume.
+/// @param range  of the values of the volume, for the presets
+/// @throws IoError  as read_transfer_function()
+TransferFunction transfer_of(const PictureOptions& options,
+                             const Grid& grid,
+                             const std::array<double, 2>& range);
+
+}  // namespace tetwarp::cli
