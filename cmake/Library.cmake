@@ -55,8 +55,8 @@ tetwarp_sources(tetwarp host/reference/warp
 tetwarp_sources(tetwarp host/scene
   alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp
   lattice_search.cpp loft.cpp loft_line.cpp marching_tets.cpp ring_surface.cpp rings.cpp
-  scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp
-  voxel_owner.cpp voxel_shares.cpp)
+  scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp shape_lattice.cpp shape_surface.cpp
+  sheet.cpp surface.cpp surface_lattice.cpp voxel_owner.cpp voxel_shares.cpp)
 tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
 tetwarp_sources(tetwarp host/simulate/contact_step
