@@ -149,12 +149,22 @@ set(tetwarp_link_tests "")
 if(TETWARP_HAS_SCREENS)
   set(tetwarp_link_tests tests/view/test_screen_link.cpp)
 endif()
+set(tetwarp_gamepad_tests "")
+if(TETWARP_HAS_VIEW AND SDL2_FOUND)
+  set(tetwarp_gamepad_tests tests/view/test_gamepad.cpp)
+endif()
 tetwarp_add_cli_tests(tetwarp_view_tests
-  ${tetwarp_link_tests}
+  ${tetwarp_link_tests} ${tetwarp_gamepad_tests}
+  tests/view/test_live_simulation.cpp
   tests/view/test_screen_messages.cpp
   tests/view/test_screens.cpp
+  tests/view/test_view_colors.cpp
+  tests/view/test_view_devices.cpp
   tests/view/test_view_parts.cpp)
 target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_parts)
+if(tetwarp_gamepad_tests)
+  target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_devices SDL2::SDL2)
+endif()
 if(TETWARP_HAS_SCREENS)
   target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_link)
 endif()
@@ -166,7 +176,9 @@ if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
   if(TETWARP_HAS_SCREENS)
     add_test(NAME screens COMMAND ${TETWARP_PYTHON3} -B
       ${PROJECT_SOURCE_DIR}/tests/view/check_screens.py $<TARGET_FILE:tetwarp_command>)
-    set_tests_properties(screens PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
+    add_test(NAME network COMMAND ${TETWARP_PYTHON3} -B
+      ${PROJECT_SOURCE_DIR}/tests/view/check_network.py $<TARGET_FILE:tetwarp_command>)
+    set_tests_properties(screens network PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
   endif()
 endif()
 
@@ -175,6 +187,7 @@ if(TETWARP_HAS_PYTHON)
   add_test(NAME python COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/python/tests/run.py)
   set_tests_properties(python PROPERTIES LABELS python SKIP_RETURN_CODE 77 TIMEOUT 300
     ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;PYTHONDONTWRITEBYTECODE=1;TETWARP_COMMAND=$<TARGET_FILE:tetwarp_command>")
+  include(cmake/EmulatedPython.cmake)
 else()
   add_test(NAME python COMMAND ${CMAKE_COMMAND} -E echo
     "skipped: the Python package was not built: there is no ${tetwarp_python_missing}")

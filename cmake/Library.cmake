@@ -102,8 +102,8 @@ tetwarp_sources(tetwarp host/warp
   backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp map_points.cpp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
-  backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_taps.cpp
-  overlap_stage_cpu.cpp resample.cpp transform_links.cpp
+  backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_plan.cpp
+  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp transform_links.cpp
   voxel_places.cpp warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
   row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda

@@ -5,7 +5,8 @@
 set(TETWARP_HAS_PYTHON FALSE)
 set(tetwarp_python_missing "wish for it: TETWARP_PYTHON is OFF")
 if(NOT TETWARP_PYTHON STREQUAL "OFF")
-  find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module)
+  find_package(Python 3.9 QUIET
+    COMPONENTS Interpreter Development.Module ${SKBUILD_SABI_COMPONENT})
   if(Python_Development.Module_FOUND AND Python_Interpreter_FOUND)
     execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir
       OUTPUT_VARIABLE tetwarp_nanobind OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -27,7 +28,11 @@ if(NOT TETWARP_HAS_PYTHON)
   return()
 endif()
 
-nanobind_add_module(tetwarp_python NB_STATIC NB_SUPPRESS_WARNINGS
+set(tetwarp_python_abi)
+if(SKBUILD_SABI_COMPONENT)  # set from CPython 3.12 on, by pyproject.toml
+  set(tetwarp_python_abi STABLE_ABI)
+endif()
+nanobind_add_module(tetwarp_python ${tetwarp_python_abi} NB_STATIC NB_SUPPRESS_WARNINGS
   python/arrays.cpp python/bind_certify.cpp python/bind_contact.cpp python/bind_files.cpp
   python/bind_mesh.cpp python/bind_operator.cpp python/bind_simulate.cpp python/bind_tracker.cpp python/bind_volume.cpp
   python/bind_warp.cpp python/interruption.cpp python/module.cpp)
@@ -37,9 +42,15 @@ set_target_properties(tetwarp_python PROPERTIES
   UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 3)
 target_include_directories(tetwarp_python PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(tetwarp_python PRIVATE tetwarp_io tetwarp_options)
+if(TETWARP_BUNDLE)
+  # HDF5 is in the module and hidden: h5py brings another one into the same process.
+  target_sources(tetwarp_python PRIVATE python/standard_streams.c)
+  target_link_options(tetwarp_python PRIVATE
+    -Wl,--exclude-libs,ALL -Wl,--wrap=stdout -Wl,--wrap=stderr)
+endif()
 
 set(tetwarp_python_files __init__.py _arrays.py _autograd.py _bridges.py _certify.py _contact.py
-  _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _simulate.py _tracker.py _volume.py
+  _device.py _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _simulate.py _tracker.py _volume.py
   _warp.py py.typed)
 file(MAKE_DIRECTORY ${tetwarp_package})
 foreach(file IN LISTS tetwarp_python_files)
@@ -52,10 +63,16 @@ nanobind_add_stub(tetwarp_python_stub MODULE _core PYTHON_PATH ${tetwarp_package
   OUTPUT ${tetwarp_package}/_core.pyi DEPENDS tetwarp_python)
 
 if(SKBUILD)
-  install(TARGETS tetwarp_python LIBRARY DESTINATION tetwarp COMPONENT python)
+  # Everything lies in the package: module and command search the reader beside them.
+  set(tetwarp_wheel tetwarp_python tetwarp_command tetwarp_read)
+  set_target_properties(${tetwarp_wheel} PROPERTIES INSTALL_RPATH "$ORIGIN/lib")
+  install(TARGETS ${tetwarp_wheel} RUNTIME_DEPENDENCY_SET tetwarp_wheel_libraries
+    LIBRARY DESTINATION tetwarp COMPONENT python RUNTIME DESTINATION tetwarp COMPONENT python)
   install(FILES ${tetwarp_package}/_core.pyi DESTINATION tetwarp COMPONENT python)
-  # Module and command search the reader beside them.
-  install(TARGETS tetwarp_read RUNTIME DESTINATION tetwarp COMPONENT python)
-  install(TARGETS tetwarp_command tetwarp_read RUNTIME DESTINATION ${SKBUILD_SCRIPTS_DIR}
+  install(PROGRAMS python/command.py DESTINATION ${SKBUILD_SCRIPTS_DIR} RENAME tetwarp
     COMPONENT python)
+  if(TETWARP_BUNDLE)
+    install(RUNTIME_DEPENDENCY_SET tetwarp_wheel_libraries DESTINATION tetwarp/lib COMPONENT python
+      PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|libgcc_s|libstdc\\+\\+|ld-linux-.*)\\.so")
+  endif()
 endif()

@@ -161,6 +161,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_tests unit)
 
   tetwarp_add_tests(tetwarp_reference_tests SOURCES
+    tests/warp/test_conservative_operator.cpp
     tests/warp/test_coverage.cpp
     tests/warp/test_warp_operator.cpp
     tests/warp/test_warp_values.cpp)

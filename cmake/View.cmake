@@ -2,8 +2,10 @@
 # left out where this is missing. `tetwarp view` then names the package.
 add_library(tetwarp_view_parts STATIC)
 tetwarp_sources(tetwarp_view_parts host/view
-  body_carrier.cpp input_log.cpp live_simulation.cpp live_volumes.cpp obstacle_surface.cpp pick.cpp
-  ray_quality.cpp scene_look.cpp view_options.cpp view_scene.cpp volume_colors.cpp)
+  body_carrier.cpp curve_editor.cpp finger_pair.cpp input_delay.cpp input_device.cpp
+  input_log.cpp live_simulation.cpp live_start.cpp live_volumes.cpp obstacle_surface.cpp pick.cpp
+  ray_quality.cpp scene_look.cpp simulated_device.cpp surface_binding.cpp surface_values.cpp
+  value_colors.cpp view_options.cpp view_scene.cpp view_tools.cpp volume_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/screens
   off_axis.cpp room.cpp room_file.cpp scene_sharer.cpp screen_keys.cpp screen_message.cpp
   shared_scene.cpp shared_state.cpp swap_group.cpp)
@@ -33,7 +35,7 @@ set(TETWARP_HAS_VIEW FALSE)
 if(NOT TETWARP_VIEW STREQUAL "OFF")
   find_package(VTK 9 QUIET COMPONENTS
     CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersSources InteractionStyle
-    RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI RenderingVolume
+    RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI RenderingVolume
     RenderingVolumeOpenGL2)
   find_package(X11 QUIET)
   if(VTK_FOUND AND X11_FOUND)
@@ -84,15 +86,37 @@ if(TETWARP_HAS_SCREENS)
 else()
   set(tetwarp_screen_sources screens_nozmq.cpp)
 endif()
+
+# ---- devices beside mouse and keys, each by its library
+add_library(tetwarp_view_devices STATIC)
+find_package(SDL2 QUIET)
+find_path(TETWARP_SPNAV_INCLUDE spnav.h)
+find_library(TETWARP_SPNAV_LIBRARY spnav)
+set(tetwarp_device_sources gamepad_nosdl.cpp space_mouse_nospnav.cpp)
+if(SDL2_FOUND)
+  list(TRANSFORM tetwarp_device_sources REPLACE "nosdl" "sdl")
+  target_link_libraries(tetwarp_view_devices PRIVATE SDL2::SDL2)
+endif()
+if(TETWARP_SPNAV_INCLUDE AND TETWARP_SPNAV_LIBRARY)
+  list(TRANSFORM tetwarp_device_sources REPLACE "nospnav" "spnav")
+  target_include_directories(tetwarp_view_devices SYSTEM PRIVATE ${TETWARP_SPNAV_INCLUDE})
+  target_link_libraries(tetwarp_view_devices PRIVATE ${TETWARP_SPNAV_LIBRARY} ${X11_LIBRARIES})
+endif()
+tetwarp_sources(tetwarp_view_devices host/view ${tetwarp_device_sources})
+target_link_libraries(tetwarp_view_devices PUBLIC tetwarp_view_parts PRIVATE tetwarp_options)
+target_compile_options(tetwarp_view_devices PRIVATE $<$<CONFIG:Release>:-O1>)
+message(STATUS "tetwarp: devices of tetwarp view: ${tetwarp_device_sources}")
+
 add_executable(tetwarp_view)
 tetwarp_sources(tetwarp_view host/view/window
-  cut_plane.cpp mouse_style.cpp scene_actors.cpp ${tetwarp_screen_sources} surface_actor.cpp view_window.cpp
-  volume_actors.cpp window_picture.cpp
+  curve_panel.cpp cut_plane.cpp device_hand.cpp mouse_style.cpp overlay_text.cpp scene_actors.cpp ${tetwarp_screen_sources} surface_actor.cpp
+  value_legend.cpp view_window.cpp volume_actors.cpp window_film.cpp window_picture.cpp
+  window_texts.cpp
   ALONE main.cpp)
 set_target_properties(tetwarp_view PROPERTIES
   OUTPUT_NAME tetwarp-view UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_link_libraries(tetwarp_view PRIVATE
-  tetwarp_view_parts fmt::fmt ${VTK_LIBRARIES} ${X11_LIBRARIES} tetwarp_options)
+  tetwarp_view_devices tetwarp_view_parts fmt::fmt ${VTK_LIBRARIES} ${X11_LIBRARIES} tetwarp_options)
 if(TETWARP_HAS_SCREENS)
   target_link_libraries(tetwarp_view PRIVATE tetwarp_view_link)
 endif()

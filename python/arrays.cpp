@@ -52,13 +52,13 @@ nb::dlpack::dtype dtype_of(PixelType type) {
   return nb::dtype<double>();
 }
 
-VolumeView view_of(const InSamples& samples, const Grid& grid) {
+VolumeView view_of(const AnySamples& samples, const Grid& grid) {
   const int components = samples.ndim() == 4 ? static_cast<int>(samples.shape(3)) : 1;
-  return {grid, pixel_type_of(samples.dtype()), components, samples.data(), Memory::host};
+  return {grid, pixel_type_of(samples.dtype()), components, samples.data(), memory_of(samples)};
 }
 
 Volume volume_of(const InSamples& samples, const Grid& grid, const std::string& name) {
-  const VolumeView view = view_of(samples, grid);
+  const VolumeView view = view_of(AnySamples(samples), grid);
   Volume volume = make_volume(grid, view.type, view.components, name);
   std::memcpy(volume.data.data(), samples.data(), volume.data.size());
   return volume;

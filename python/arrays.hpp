@@ -27,15 +27,26 @@ using InTets = In<std::int32_t, nb::shape<-1, 4>>;
 using InTriangles = In<std::int32_t, nb::shape<-1, 3>>;
 using InHexes = In<std::int32_t, nb::shape<-1, 8>>;
 using InSamples = nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu>;  ///< of any pixel type
-using OutSamples = nb::ndarray<nb::c_contig, nb::device::cpu>;         ///< writable
+/// The same in host memory or that of a CUDA device.
+using AnySamples = nb::ndarray<nb::ro, nb::c_contig>;
+using AnyOut = nb::ndarray<nb::c_contig>;  ///< writable
+using AnyPoints = nb::ndarray<const double, nb::c_contig, nb::shape<-1, 3>>;
 using NumpyArray = nb::ndarray<nb::numpy>;
 
 /// @throws std::invalid_argument  the type is not a pixel type
 PixelType pixel_type_of(const nb::dlpack::dtype& type);
 nb::dlpack::dtype dtype_of(PixelType type);
 
+/// Memory::device for that of a CUDA device, also for that which a device shares with the host.
+template <class Array>
+Memory memory_of(const Array& array) {
+  const int kind = array.device_type();
+  return kind == nb::device::cuda::value || kind == nb::device::cuda_managed::value ? Memory::device
+                                                                                    : Memory::host;
+}
+
 /// Samples of shape [k][j][i] or [k][j][i][component], as a view that does not own them.
-VolumeView view_of(const InSamples& samples, const Grid& grid);
+VolumeView view_of(const AnySamples& samples, const Grid& grid);
 /// The same as a Volume, which copies them.
 Volume volume_of(const InSamples& samples, const Grid& grid, const std::string& name);
 /// The samples of a volume as an array of shape [k][j][i] or, with several components,

@@ -106,7 +106,7 @@ void write_volume_file(const std::string& path,
   std::vector<std::vector<InSamples>> samples;  // [array][step]
   for (const nb::dict& array : arrays) {
     samples.push_back(nb::cast<std::vector<InSamples>>(array["samples"], false));
-    const VolumeView first = view_of(samples.back().front(), grid);
+    const VolumeView first = view_of(AnySamples(samples.back().front()), grid);
     ArrayHeader header{nb::cast<std::string>(array["name"]), first.type, first.components};
     header.nifti = array["nifti"].is_none() ? default_nifti_facts(header.components)
                                             : facts_of(nb::cast<nb::dict>(array["nifti"]));

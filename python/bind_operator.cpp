@@ -28,11 +28,13 @@ void make_operator(WarpOperator* self,
                    const InHexes& hexes,
                    const InPoints& deformed,
                    const std::string& interpolator,
+                   const std::string& intensity,
                    const std::string& outside,
                    std::optional<Grid> output_grid,
                    const In<std::uint8_t>& mask,
                    int threads) {
   const WarpOperatorOptions options{.filter = choice<Filter>("interpolator", interpolator),
+                                    .intensity = choice<Intensity>("intensity", intensity),
                                     .outside = choice<Outside>("outside", outside),
                                     .output_grid = output_grid,
                                     .mask = vector_of(mask),
@@ -69,7 +71,8 @@ void bind_operator(nb::module_& module) {
   nb::class_<WarpOperator>(module, "WarpOperator")
       .def("__init__", &make_operator, nb::arg("source"), nb::arg("points"), nb::arg("tets"),
            nb::arg("hexes"), nb::arg("deformed"), nb::kw_only(), nb::arg("interpolator"),
-           nb::arg("outside"), nb::arg("output_grid").none(), nb::arg("mask"), nb::arg("threads"))
+           nb::arg("intensity"), nb::arg("outside"), nb::arg("output_grid").none(), nb::arg("mask"),
+           nb::arg("threads"))
       .def("support",
            [](const WarpOperator& self) { return array_of<std::uint8_t>(self.support()); })
       .def("forward", &apply_forward, nb::arg("x"), nb::arg("y"))

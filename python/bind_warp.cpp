@@ -5,8 +5,12 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tetwarp/warp.hpp>
 #include <utility>
@@ -23,7 +27,7 @@ namespace {
 /// A Warper and the arrays of its sources, which it reads in place.
 class ArrayWarper {
  public:
-  ArrayWarper(std::vector<InSamples> sources,
+  ArrayWarper(std::vector<AnySamples> sources,
               const Grid& grid,
               const Mesh& mesh,
               const WarpOptions& options)
@@ -40,15 +44,23 @@ class ArrayWarper {
 
   const Warper& warper() const { return warper_; }
 
+  bool shares_memory(const AnyOut& out) const {
+    const auto* const begin = static_cast<const std::byte*>(out.data());
+    return std::ranges::any_of(sources_, [&](const AnySamples& source) {
+      const auto* const data = static_cast<const std::byte*>(source.data());
+      return data < begin + out.nbytes() && begin < data + source.nbytes();
+    });
+  }
+
  private:
   Warper make_warper(const Grid& grid, const Mesh& mesh, const WarpOptions& options) const {
     std::vector<VolumeView> views;
-    for (const InSamples& samples : sources_) views.push_back(view_of(samples, grid));
+    for (const AnySamples& samples : sources_) views.push_back(view_of(samples, grid));
     const nb::gil_scoped_release release;
     return {views, mesh, options};
   }
 
-  std::vector<InSamples> sources_;
+  std::vector<AnySamples> sources_;
   Warper warper_;
   std::atomic<bool> is_running_ = false;
 };
@@ -57,13 +69,13 @@ class ArrayWarper {
 template <class T>
 T* data_of(const nb::dict& arrays, const char* name) {
   if (!arrays.contains(name)) return nullptr;
-  return nb::cast<nb::ndarray<T, nb::c_contig, nb::device::cpu>>(arrays[name], false).data();
+  return nb::cast<nb::ndarray<T, nb::c_contig>>(arrays[name], false).data();
 }
 
-WarpTarget target_of(const std::vector<void*>& volumes,
-                     const nb::dict& extras,
-                     bool holds_previous) {
+/// Arrays that are all in the memory of the first volume.
+WarpTarget target_of(const std::vector<void*>& volumes, Memory memory, const nb::dict& extras) {
   WarpTarget target{.volumes = volumes};
+  target.memory = memory;
   target.mask = data_of<std::uint8_t>(extras, "mask");
   target.owner = data_of<std::int32_t>(extras, "owner");
   target.fields = {.displacement = data_of<float>(extras, "displacement"),
@@ -71,7 +83,6 @@ WarpTarget target_of(const std::vector<void*>& volumes,
                    .gradient = data_of<float>(extras, "gradient"),
                    .strain = data_of<float>(extras, "strain"),
                    .forward = data_of<float>(extras, "forward")};
-  target.holds_previous = holds_previous;
   return target;
 }
 
@@ -101,23 +112,31 @@ nb::dict report_of(const Report& whole, const StepReport& step) {
 }
 
 nb::dict run_step(ArrayWarper& warper,
-                  const InPoints& deformed,
-                  const std::vector<OutSamples>& volumes,
+                  const AnyPoints& deformed,
+                  const std::vector<AnyOut>& volumes,
                   const nb::dict& extras,
                   bool holds_previous,
+                  std::uintptr_t stream,
                   nb::object progress) {
   std::vector<void*> samples;
   samples.reserve(volumes.size());
-  for (const OutSamples& volume : volumes) samples.push_back(volume.data());
+  for (const AnyOut& volume : volumes) {
+    if (warper.shares_memory(volume)) {
+      throw std::invalid_argument("out: shares memory with a source");
+    }
+    samples.push_back(volume.data());
+  }
   const PositionsView positions(deformed.data(), static_cast<std::int64_t>(deformed.shape(0)),
-                                Memory::host);
-  const StepReport step =
-      warper.step(positions, target_of(samples, extras, holds_previous), std::move(progress));
+                                memory_of(deformed));
+  WarpTarget target = target_of(samples, memory_of(volumes.front()), extras);
+  target.holds_previous = holds_previous;
+  target.stream = reinterpret_cast<void*>(stream);
+  const StepReport step = warper.step(positions, target, std::move(progress));
   return report_of(warper.warper().report(), step);
 }
 
 void make_array_warper(ArrayWarper* self,
-                       std::vector<InSamples> sources,
+                       std::vector<AnySamples> sources,
                        const Grid& grid,
                        const InPoints& points,
                        const InTets& tets,
@@ -159,11 +178,9 @@ void bind_warp(nb::module_& module) {
            nb::arg("overshoot"), nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"),
            nb::arg("outside"), nb::arg("falloff"), nb::arg("default_value"),
            nb::arg("output_grid").none(), nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
-      .def_prop_ro("output_grid",
-                   [](const ArrayWarper& self) { return self.warper().output_grid(); })
       .def("report", [](const ArrayWarper& self) { return to_json(self.warper().report()); })
       .def("step", &run_step, nb::arg("deformed"), nb::arg("volumes"), nb::arg("extras"),
-           nb::arg("holds_previous"), nb::arg("progress").none());
+           nb::arg("holds_previous"), nb::arg("stream"), nb::arg("progress").none());
 }
 
 }  // namespace tetwarp::python

@@ -9,12 +9,14 @@
 A PEER needs its own package only; each case runs in a process of its own, under Linux. Seconds are
 of the processor, one thread, the least of three runs (SciPy: of two), of the whole call: what
 follows from node positions alone is part of it. Memory is the peak of the process in the first run
-beyond its inputs and imports. Exact are the owners of the back end `reference`; of each covered
+beyond its inputs and imports, or that of the command that it starts. Exact are the owners of the back end `reference`; of each covered
 voxel the source position and the linear sample are computed in float64. Wrong are covered voxels
 that differ by more than a thousandth of the range of the image.
 """
 
 import json
+import os
+import resource
 import subprocess
 import sys
 import time
@@ -165,9 +167,7 @@ def sitk_call(case):
     import SimpleITK as sitk
 
     sitk.ProcessObject.SetGlobalDefaultNumberOfThreads(1)
-    grid = np.stack(np.meshgrid(*[np.arange(SIZE, dtype=float)] * 3, indexing="ij"), -1)
-    valid = case["owner"] >= 0
-    field = np.where(valid[..., None], case["source"] - grid, 0)[..., ::-1].copy()
+    field, valid = field_of(case)
 
     def call():
         vectors = sitk.GetImageFromArray(field, isVector=True)
@@ -175,6 +175,74 @@ def sitk_call(case):
         image = sitk.GetImageFromArray(case["image"])
         out = sitk.Resample(image, image, transform, sitk.sitkLinear, 0.0)
         return np.where(valid, sitk.GetArrayViewFromImage(out), 0), None
+
+    return call
+
+
+def field_of(case):
+    """The exact displacement of every voxel, x y z, zero where no cell is; and where one is."""
+    grid = np.stack(np.meshgrid(*[np.arange(SIZE, dtype=float)] * 3, indexing="ij"), -1)
+    valid = case["owner"] >= 0
+    return np.where(valid[..., None], case["source"] - grid, 0)[..., ::-1].copy(), valid
+
+
+def ants_call(case):
+    import ants
+
+    field, valid = field_of(case)
+    image = ants.from_numpy(np.asfortranarray(case["image"].T))
+    vectors = ants.from_numpy(np.asfortranarray(field.transpose(2, 1, 0, 3)), has_components=True)
+
+    def call():
+        transform = ants.transform_from_displacement_field(vectors)
+        out = transform.apply_to_image(image, image, interpolation="linear")
+        return np.where(valid, out.numpy().T, 0), None
+
+    return call
+
+
+def greedy_call(case):
+    """It takes the image from memory, but the field from a file only."""
+    import tempfile
+
+    import SimpleITK as sitk
+    from picsl_greedy import Greedy3D
+
+    field, valid = field_of(case)
+    folder = tempfile.TemporaryDirectory()
+    vectors = f"{folder.name}/field.mha"
+    sitk.WriteImage(sitk.GetImageFromArray(field.astype(np.float32), isVector=True), vectors)
+    image = sitk.GetImageFromArray(case["image"])
+
+    def call(kept=folder):  # its file lasts as long as the function
+        greedy = Greedy3D()
+        greedy.execute(f"-threads 1 -ri LINEAR -rf image -rm image warped -r {vectors}",
+                       image=image, warped=None)
+        return np.where(valid, sitk.GetArrayFromImage(greedy["warped"]), 0), None
+
+    return call
+
+
+def plastimatch_call(case):
+    import shutil
+    import tempfile
+
+    import SimpleITK as sitk
+
+    if shutil.which("plastimatch") is None:
+        raise FileNotFoundError("plastimatch: not on the path")
+    field, valid = field_of(case)
+    folder = tempfile.TemporaryDirectory()
+    image, out, vectors = (f"{folder.name}/{name}.mha" for name in ("image", "out", "field"))
+    sitk.WriteImage(sitk.GetImageFromArray(case["image"]), image)
+    sitk.WriteImage(sitk.GetImageFromArray(field.astype(np.float32), isVector=True), vectors)
+    one = dict.fromkeys(("OMP_NUM_THREADS", "ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS"), "1")
+
+    def call(kept=folder):  # its files last as long as the function
+        subprocess.run(["plastimatch", "warp", "--input", image, "--xf", vectors, "--output-img",
+                        out, "--interpolation", "linear", "--output-type", "float"],
+                       check=True, env=os.environ | one, stdout=subprocess.DEVNULL)
+        return np.where(valid, sitk.GetArrayFromImage(sitk.ReadImage(out)), 0), None
 
     return call
 
@@ -202,6 +270,10 @@ PEERS = {
     "vtk": ("vtk", vtk_call, "whole job, two vtkProbeFilter"),
     "scipy": ("scipy", scipy_call, "whole job, cells of its own: LinearNDInterpolator"),
     "simpleitk": ("SimpleITK", sitk_call, "half: the exact field is given"),
+    "ants": ("antspyx", ants_call, "half: the exact field is given"),
+    "greedy": ("picsl_greedy", greedy_call, "half: the exact field is given in a file"),
+    "plastimatch": ("plastimatch", plastimatch_call,
+                    "half: the exact field is given; its command, with files in and out"),
     "torch": ("torch", torch_call, "half: exact positions are given"),
 }
 
@@ -216,15 +288,20 @@ def measured(call, runs):
     """Least seconds, results of the first of these runs, its peak of memory beyond what was there
     [byte], and whether all gave the same bits.
     """
+    def spent():
+        child = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return time.process_time() + child.ru_utime + child.ru_stime
+
     Path("/proc/self/clear_refs").write_text("5", encoding="ascii")  # VmHWM begins anew
     before = memory("VmRSS")
     seconds, results = [], []
     for _ in range(runs):
-        start = time.process_time()
+        start = spent()
         results.append(call())
-        seconds.append(time.process_time() - start)
+        seconds.append(spent() - start)
         if len(results) == 1:
-            peak = memory("VmHWM") - before
+            child = 1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+            peak = max(memory("VmHWM") - before, child)
     same = all(np.array_equal(results[0][0], other[0]) for other in results)
     return min(seconds), results[0], peak, same
 
@@ -232,6 +309,8 @@ def measured(call, runs):
 def version_of(module):
     from importlib.metadata import PackageNotFoundError, version
 
+    if module == "plastimatch":
+        return subprocess.check_output([module, "--version"], text=True).split()[-1]
     try:
         return version(module)
     except PackageNotFoundError:

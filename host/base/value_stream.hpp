@@ -1,7 +1,7 @@
 /// @file value_stream.hpp
 /// Values as bytes in the byte order of the machine, read in the order in which they are written:
-/// trivially copyable values, texts, lists, maps, optional values, and records whose members a
-/// function exchange_members(stream, record) passes to the stream.
+/// trivially copyable values, texts, lists, maps, optional values, variants, and records whose
+/// members a function exchange_members(stream, record) passes to the stream.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -11,6 +11,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace tetwarp {
@@ -55,6 +56,13 @@ class ValueWriter {
   void write(const std::optional<T>& value) {
     write(static_cast<std::uint8_t>(value.has_value()));
     if (value) write(*value);
+  }
+  /// One byte, the number of the alternative, and its value.
+  template <class... Kinds>
+  void write(const std::variant<Kinds...>& value) {
+    static_assert(sizeof...(Kinds) <= 256);
+    write(static_cast<std::uint8_t>(value.index()));
+    std::visit([this](const auto& kind) { write(kind); }, value);
   }
   template <class T>
   requires requires(Stream& stream, const T& record) { exchange_members(stream, record); }
@@ -125,10 +133,22 @@ class ValueReader {
     value.reset();
     if (has_value) read(value.emplace());
   }
+  template <class... Kinds>
+  void read(std::variant<Kinds...>& value) {
+    std::uint8_t kind = 0;
+    read(kind);
+    read_kind(value, kind, std::index_sequence_for<Kinds...>());
+  }
   template <class T>
   requires requires(Stream& stream, T& record) { exchange_members(stream, record); }
   void read(T& record) { exchange_members(self(), record); }
 
+  template <class... Kinds, std::size_t... numbers>
+  void read_kind(std::variant<Kinds...>& value, std::size_t kind, std::index_sequence<numbers...>) {
+    const bool is_known =
+        ((kind == numbers && (read(value.template emplace<numbers>()), true)) || ...);
+    if (!is_known) self().fail("damaged, no alternative has number " + std::to_string(kind));
+  }
   std::uint64_t count(std::size_t bytes) {
     std::uint64_t count = 0;
     read(count);

@@ -67,6 +67,18 @@ struct SimulateOptions {
   std::function<bool(const StepProgress&)> progress = {};
 };
 
+/// Where SimulateOptions::max_step_seconds ended a step, in counts. A step from an equal state that
+/// ends there has the same bits, whatever time it takes, on the back end cpu with one thread:
+/// several threads end the sweeps of their islands at places that no count tells.
+struct StepLimit {
+  std::int64_t checks = -1;     ///< checks of the time before the one that ended the solves; -1:
+                                ///< none did
+  std::int64_t divisions = -1;  ///< into more parts before the one for which there was no time;
+                                ///< -1: there was for each
+
+  bool operator==(const StepLimit&) const = default;
+};
+
 /// Energies [J] at the end positions of a step.
 struct SceneEnergy {
   double kinetic = 0;
@@ -185,6 +197,11 @@ class TETWARP_EXPORT Simulator {
   ///                             finite, or too many surfaces are near each other; the state is as
   ///                             before
   bool step();
+  /// The same, but it ends at these counts and not by the clock.
+  /// @throws std::invalid_argument  SimulateOptions::max_step_seconds is infinite
+  bool step(const StepLimit& limit);
+  /// Where the last call of step() ended.
+  StepLimit step_limit() const;
 
   /// The last step's diagnostics, computed on request.
   const StepRecord& record();

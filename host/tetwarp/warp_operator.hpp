@@ -18,6 +18,9 @@ namespace tetwarp {
 /// Choices of a WarpOperator.
 struct WarpOperatorOptions {
   Filter filter = Filter::linear;  ///< any but labels, which is not linear in the samples
+  /// value; or conservative, which does not use `filter`, needs Outside::background, and stores W:
+  /// 16 bytes for each pair of an output voxel and a voxel of the source that it takes of.
+  Intensity intensity = Intensity::value;
   /// background: rows of voxels without a cell are zero; or identity.
   Outside outside = Outside::background;
   std::optional<Grid> output_grid = {};  ///< nothing: the grid of the source
@@ -28,7 +31,9 @@ struct WarpOperatorOptions {
 
 /// The matrix W of one deformation: W x are the samples that a warp of the samples x gives, with
 /// background 0, in float64. Row v holds the weights of the filter at the position in the source of
-/// output voxel v, which is that of Warper; the matrix is not stored.
+/// output voxel v, which is that of Warper; the matrix is not stored. With Intensity::conservative
+/// row v holds what the tetrahedra move into the box of v from the box of each voxel of the source,
+/// over the volume of v: sums of W x over the output are those of x over the mesh at rest.
 ///
 /// Samples are float64, [k][j][i][component] with any number of components, each of which is mapped
 /// by the same W. Every sum is taken in one order, so that results have the same bits for every
@@ -71,7 +76,8 @@ class TETWARP_EXPORT WarpOperator {
   /// @param x  finite samples on the source grid
   /// @param y  finite, on the output grid
   /// @returns one vector per node [1 / world]
-  /// @throws std::invalid_argument  as forward(), or with Filter::nearest, which has no slope
+  /// @throws std::invalid_argument  as forward(), with Filter::nearest, which has no slope, or with
+  ///                                Intensity::conservative
   std::vector<Point3> node_gradient(std::span<const double> x, std::span<const double> y) const;
 
  private:

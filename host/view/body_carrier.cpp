@@ -12,7 +12,15 @@ constexpr double most_speed = 5;  // sizes of the body a second
 }  // namespace
 
 BodyCarrier::BodyCarrier(const Simulator& simulator)
-    : simulator_(simulator), displacements_(simulator.scene().bodies.size()) {}
+    : simulator_(simulator), displacements_(simulator.scene().bodies.size()) {
+  for (std::size_t b = 0; b < displacements_.size(); ++b) starts_.push_back(first_point(b));
+}
+
+Point3 BodyCarrier::first_point(std::size_t body) const {
+  if (!may_carry(body)) return {0, 0, 0};
+  const std::vector<Point3> points = simulator_.surface_positions(body);
+  return points.empty() ? Point3{0, 0, 0} : points.front();
+}
 
 bool BodyCarrier::may_carry(std::size_t body) const {
   return simulator_.scene().bodies[body].kind == BodyKind::scripted;
@@ -33,7 +41,9 @@ void BodyCarrier::pull(const Point3& point) {
 
 void BodyCarrier::reset() {
   held_.reset();
-  displacements_.assign(displacements_.size(), {0, 0, 0});
+  for (std::size_t b = 0; b < displacements_.size(); ++b) {
+    displacements_[b] = minus(first_point(b), starts_[b]);
+  }
 }
 
 std::optional<BodyCarrier::Way> BodyCarrier::next() const {

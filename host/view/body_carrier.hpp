@@ -16,17 +16,23 @@ namespace tetwarp::view {
 /// its way.
 class BodyCarrier {
  public:
-  /// @param simulator  kept by the caller
+  /// @param simulator  at its start; kept by the caller
   explicit BodyCarrier(const Simulator& simulator);
 
   bool may_carry(std::size_t body) const;
+  /// The body in the hand.
+  std::optional<std::size_t> held() const {
+    return held_ ? std::optional(held_->body) : std::nullopt;
+  }
   /// @returns why it cannot be carried, or empty
   std::string take_up(std::size_t body, const Point3& point);
   /// @param point  where the point that was taken is to be [world]
   void pull(const Point3& point);
   void let_go() { held_.reset(); }
-  /// All bodies are where they were at the start.
+  /// The simulator has another state.
   void reset();
+  /// From the start [m].
+  const Point3& displacement(std::size_t body) const { return displacements_[body]; }
 
   struct Way {
     std::size_t body = 0;
@@ -47,8 +53,11 @@ class BodyCarrier {
     Point3 target;  ///< the displacement to come to
   };
 
+  Point3 first_point(std::size_t body) const;
+
   const Simulator& simulator_;
-  std::vector<Point3> displacements_;  ///< [bodies]
+  std::vector<Point3> starts_;         ///< [bodies], of the first point of the surface
+  std::vector<Point3> displacements_;  ///< [bodies], of scripted ones
   std::optional<Held> held_;
 };
 

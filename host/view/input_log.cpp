@@ -13,7 +13,7 @@
 namespace tetwarp::view {
 namespace {
 constexpr const char* first_line = "tetwarp input 1";
-constexpr const char* const words[] = {"grab", "move", "release", "restart", "carry"};
+constexpr const char* const words[] = {"grab", "move", "release", "restart", "carry", "limit"};
 
 template <class Number>
 std::string number(Number value) {
@@ -66,7 +66,8 @@ InputEvent event_of(LineReader& line, std::int64_t tick, const std::string& word
   std::size_t kind = 0;
   while (kind < std::size(words) && word != words[kind]) ++kind;
   if (kind == std::size(words)) {
-    throw std::invalid_argument("'" + word + "' is not grab, move, release, restart, carry or end");
+    throw std::invalid_argument("'" + word +
+                                "' is not grab, move, release, restart, carry, limit or end");
   }
   event.kind = static_cast<InputKind>(kind);
   if (event.kind == InputKind::grab) {
@@ -80,6 +81,9 @@ InputEvent event_of(LineReader& line, std::int64_t tick, const std::string& word
   } else if (event.kind == InputKind::carry) {
     event.handle.body = line.word();
     event.displacement = line.point();
+  } else if (event.kind == InputKind::limit) {
+    event.limit.checks = line.number<std::int64_t>();
+    event.limit.divisions = line.number<std::int64_t>();
   }
   return event;
 }
@@ -115,6 +119,8 @@ std::string text_of(const InputLog& log) {
       text += numbers(event.displacement);
     } else if (event.kind == InputKind::carry) {
       text += " " + event.handle.body + numbers(event.displacement);
+    } else if (event.kind == InputKind::limit) {
+      text += " " + number(event.limit.checks) + " " + number(event.limit.divisions);
     }
     text += "\n";
   }

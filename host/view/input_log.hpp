@@ -14,7 +14,8 @@ enum class InputKind {
   move,     ///< the held point is pulled to another place
   release,  ///< lets go
   restart,  ///< the state of the start
-  carry     ///< a scripted body goes to another place
+  carry,    ///< a scripted body goes to another place
+  limit     ///< the next step ends at counts
 };
 
 /// Acts before a step.
@@ -24,6 +25,7 @@ struct InputEvent {
   PointHandle handle = {};  ///< of a grab; its name is not kept. Of a carry: the body alone
   Point3 displacement{};    ///< of a move or carry: of the anchors or the body from where they
                             ///< started [m]
+  StepLimit limit = {};     ///< of a limit
 
   bool operator==(const InputEvent&) const = default;
 };

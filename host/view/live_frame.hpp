@@ -9,6 +9,9 @@
 
 #include <tetwarp/simulate.hpp>
 
+#include "host/view/input_delay.hpp"
+#include "host/view/surface_values.hpp"
+
 namespace tetwarp::view {
 
 /// Values of a volume are mapped linearly: `low` is 0 in the samples, `high` the largest.
@@ -37,8 +40,11 @@ struct LiveFrame {
   std::vector<std::vector<Point3>>
       points;                        ///< [bodies] of the surfaces, world; empty: of a failure
   std::vector<VolumeFrame> volumes;  ///< [volumes], empty: not warped
+  SurfaceQuantity quantity = SurfaceQuantity::none;
+  std::vector<std::vector<float>> values;  ///< as SurfaceValues::of()
   std::vector<ContactArrow> contacts;
   std::optional<GrabView> grab;
+  std::optional<InputTime> input;  ///< of the newest pull that a step has followed
   bool is_paused = false, is_converged = true;
   bool is_last = false;  ///< no more follow
   double steps_per_second = 0;

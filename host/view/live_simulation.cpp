@@ -6,10 +6,11 @@
 #include <cmath>
 #include <ctime>
 #include <exception>
-#include <tetwarp/names.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "host/base/point3.hpp"
+#include "host/view/live_start.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -17,18 +18,6 @@ constexpr const char* handle_name = "mouse";
 constexpr const char* replay_message = "a replay takes no input";
 // Times the size of a body: what the mouse holds of an elastic body or cloth.
 constexpr double grab_share = 0.08;
-
-SimulateOptions simulate_options(const ViewOptions& of) {
-  SimulateOptions options;
-  for (const EnumName<Backend>& entry : names_of<Backend>()) {
-    if (entry.name == of.backend) options.backend = entry.value;
-  }
-  options.device = static_cast<int>(of.device);
-  options.threads = static_cast<int>(of.threads);
-  options.max_step_seconds = of.max_step_seconds;
-  options.untangle = of.untangle;
-  return options;
-}
 
 /// Of this thread [s].
 double processor_seconds() {
@@ -48,12 +37,18 @@ LiveSimulation::LiveSimulation(Scene scene,
                                const ViewOptions& options,
                                std::optional<InputLog> replay)
     : options_(options),
-      simulator_(std::move(scene), simulate_options(options)),
+      simulator_(std::move(scene), simulate_options(options, replay)),
+      fingers_(simulator_, options),
       volumes_(rest_volumes(simulator_), options, simulator_.backend()),
       carrier_(simulator_),
-      start_(simulator_.checkpoint()),
+      values_(simulator_),
+      quantity_(quantity_of(options.colors)),
+      start_(first_state(options, simulator_)),
       replay_(std::move(replay)),
+      ends_at_counts_(has_limits(replay_)),
       is_paused_(options.paused) {
+  carrier_.reset();
+  fingers_.reset(carrier_);
   log_.scene = options.scene_words();
   if (replay_) last_tick_ = replay_->ticks;
   if (options.steps) last_tick_ = *options.steps;
@@ -128,7 +123,7 @@ void LiveSimulation::loop() {
     const bool has_steps = may_step();
     {
       const std::lock_guard lock(mutex_);
-      if (is_ending_ && !(has_steps && is_paused_)) return;
+      if (is_ending_ && orders_.empty() && !(has_steps && is_paused_)) return;
     }
     if (!has_steps) continue;
     take_step();
@@ -169,6 +164,10 @@ void LiveSimulation::follow(const Order& order) {
       warps_ = order.kind == OrderKind::volumes_on;
       note_change();
       return;
+    case OrderKind::values:
+      quantity_ = order.quantity;
+      note_change();
+      return;
     case OrderKind::restart:
       event.kind = InputKind::restart;
       break;
@@ -182,6 +181,7 @@ void LiveSimulation::follow(const Order& order) {
       event.handle = handle_at(order.body, order.point);
       break;
     case OrderKind::pull:
+      pulled_ = order.time;
       carrier_.pull(order.point);
       note_change();
       if (!held_) return;
@@ -217,7 +217,12 @@ void LiveSimulation::act(const InputEvent& event) {
       if (held_) held_->target = plus(held_->start, event.displacement);
     } else if (event.kind == InputKind::carry) {
       simulator_.move_script(event.handle.body, event.displacement, {0, 0, 0});
-      carrier_.note({body_of(event.handle.body), event.displacement});
+      const std::size_t body = body_of(event.handle.body);
+      carrier_.note({body, event.displacement});
+      fingers_.follow(body, event.displacement);
+    } else if (event.kind == InputKind::limit) {
+      limit_ = event.limit;
+      return;  // the step notes it
     } else if (event.kind == InputKind::release) {
       simulator_.release_handle(handle_name);
       held_.reset();
@@ -225,6 +230,7 @@ void LiveSimulation::act(const InputEvent& event) {
       simulator_.restore(start_);
       held_.reset();
       carrier_.reset();
+      fingers_.reset(carrier_);
       has_failed_ = false;
     }
     log_.events.push_back(event);
@@ -258,7 +264,11 @@ void LiveSimulation::take_step() {
   single_steps_ = std::max<std::int64_t>(single_steps_ - 1, 0);
   try {
     const double start = processor_seconds();
-    simulator_.step();
+    if (ends_at_counts_) {
+      simulator_.step(std::exchange(limit_, {}).value_or(StepLimit{}));
+    } else {
+      simulator_.step();
+    }
     seconds_.steps += processor_seconds() - start;
     count_step();
   } catch (const std::exception& error) {
@@ -268,6 +278,11 @@ void LiveSimulation::take_step() {
 }
 
 void LiveSimulation::count_step() {
+  followed_ = pulled_;
+  const StepLimit limit = simulator_.step_limit();
+  if (limit != StepLimit{}) {
+    log_.events.push_back({.tick = tick_, .kind = InputKind::limit, .limit = limit});
+  }
   ++tick_;
   if (simulator_.record().out_of_time) ++late_steps_;
   const Clock::time_point now = Clock::now();
@@ -308,6 +323,8 @@ void LiveSimulation::publish() {
   for (std::size_t b = 0; b < frame.points.size(); ++b) {
     frame.points[b] = simulator_.surface_positions(b);
   }
+  frame.quantity = quantity_;
+  frame.values = values_.of(quantity_);
   if (warps_) {
     const double start = processor_seconds();
     volumes_.warp(
@@ -346,7 +363,9 @@ void LiveSimulation::fill(LiveFrame& frame) {
     frame.grab =
         GrabView{minus(held_->target, times(1 / held_->stiffness, force)), held_->target, force};
   }
+  if (!frame.grab) frame.grab = fingers_.view(record, carrier_.held());
   if (!frame.grab) frame.grab = carrier_.view(contacts, part);
+  frame.input = followed_;
   frame.is_paused = is_paused_;
   frame.is_converged = record.converged;
   frame.is_last = tick_ >= last_tick_;

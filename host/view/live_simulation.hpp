@@ -16,6 +16,7 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/view/body_carrier.hpp"
+#include "host/view/finger_pair.hpp"
 #include "host/view/input_log.hpp"
 #include "host/view/live_frame.hpp"
 #include "host/view/live_volumes.hpp"
@@ -30,13 +31,25 @@ struct LiveSeconds {
   std::int64_t warp_count = 0;
 };
 
-enum class OrderKind { pause, step, restart, grab, pull, release, volumes_on, volumes_off };
+enum class OrderKind {
+  pause,
+  step,
+  restart,
+  grab,
+  pull,
+  release,
+  volumes_on,
+  volumes_off,
+  values  ///< of another quantity
+};
 
 /// An input of the user: a key or an action of the mouse.
 struct Order {
   OrderKind kind = OrderKind::pause;
   std::size_t body = 0;  ///< of a grab
   Point3 point{};        ///< grab: on the surface; pull: where that point is to be [world]
+  SurfaceQuantity quantity = SurfaceQuantity::none;  ///< of values
+  InputTime time = std::chrono::steady_clock::now();
 };
 
 /// Owns the Simulator and the Warpers; only its thread uses them once it has begun.
@@ -44,7 +57,8 @@ class LiveSimulation {
  public:
   /// @param scene   checked by its reader
   /// @param replay  what to repeat, in place of grabs and restarts of the user
-  /// @throws std::invalid_argument  as Simulator
+  /// @throws std::invalid_argument  as Simulator, and where steps that a limit of time ended could
+  ///                                not be repeated: several threads, back end cuda
   LiveSimulation(Scene scene, const ViewOptions& options, std::optional<InputLog> replay);
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
@@ -99,11 +113,16 @@ class LiveSimulation {
 
   ViewOptions options_;
   Simulator simulator_;
+  FingerPair fingers_;
   LiveVolumes volumes_;
   BodyCarrier carrier_;
+  SurfaceValues values_;
+  SurfaceQuantity quantity_;
   std::vector<std::byte> start_;
   std::optional<InputLog> replay_;
-  std::size_t next_event_ = 0;  ///< of the replay
+  std::size_t next_event_ = 0;      ///< of the replay
+  bool ends_at_counts_;             ///< the steps of the replay
+  std::optional<StepLimit> limit_;  ///< of its next step
   std::int64_t last_tick_ = std::numeric_limits<std::int64_t>::max();
   InputLog log_;
   LiveSeconds seconds_;
@@ -120,6 +139,7 @@ class LiveSimulation {
   bool is_sent_ = false;       ///< whether the listener has got it
   Listener listener_;
   std::optional<Held> held_;
+  std::optional<InputTime> pulled_, followed_;  ///< newest pull; that of the last step
   std::string message_;
   Clock::time_point due_;                  ///< of the next step
   std::vector<Clock::time_point> recent_;  ///< ends of the steps of the last second

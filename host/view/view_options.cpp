@@ -27,14 +27,19 @@ void visit_members(Options& of, const Visit& visit) {
   visit("height", of.height);
   visit("camera", of.camera);
   visit("preset", of.preset);
+  visit("colors", of.colors);
   visit("voxels", of.voxels);
   visit("grab_radius", of.grab_radius);
   visit("grab_stiffness", of.grab_stiffness);
   visit("ball", of.ball);
+  visit("fingers", of.fingers);
+  visit("skin_stiffness", of.skin_stiffness);
   visit("screenshot", of.screenshot);
+  visit("film", of.film);
   visit("record", of.record);
   visit("replay", of.replay);
   visit("checkpoint", of.checkpoint);
+  visit("restart", of.restart);
   visit("screens", of.screens);
   visit("address", of.address);
   visit("key", of.key);
@@ -43,6 +48,7 @@ void visit_members(Options& of, const Visit& visit) {
   visit("ends_with_master", of.ends_with_master);
   visit("timing", of.timing);
   visit("tracker", of.tracker);
+  visit("devices", of.devices);
   visit("make_keys", of.make_keys);
 }
 
@@ -116,6 +122,13 @@ std::string ViewOptions::scene_words() const {
   std::string words = scene();
   if (ball) words += " --ball ";
   write(words, ball);
+  if (!restart.empty()) words += " --restart " + restart;
+  if (fingers) {
+    words += " --fingers ";
+    write(words, fingers);
+    words += " --skin-stiffness ";
+    write(words, skin_stiffness);
+  }
   return words;
 }
 

@@ -19,16 +19,20 @@ struct ViewOptions {
   double max_step_seconds = std::numeric_limits<double>::infinity();
   bool untangle = false;
   bool paused = false;
-  bool fast = false;                                   ///< no waiting for the time of the scene
-  std::optional<std::int64_t> steps;                   ///< then the window closes
-  std::int64_t width = 960, height = 640;              ///< [pixel]
-  std::optional<std::array<double, 6>> camera;         ///< eye, target
-  std::string preset = "ct";                           ///< colors of volumes: ct or mr
-  std::int64_t voxels = 2'000'000;                     ///< at most, of all warped volumes
-  std::optional<double> grab_radius;                   ///< [m]
-  std::optional<double> grab_stiffness;                ///< [N/m]
-  std::optional<std::array<double, 4>> ball;           ///< center and radius of a ball to push with
-  std::string screenshot, record, replay, checkpoint;  ///< files; empty: none
+  bool fast = false;                            ///< no waiting for the time of the scene
+  std::optional<std::int64_t> steps;            ///< then the window closes
+  std::int64_t width = 960, height = 640;       ///< [pixel]
+  std::optional<std::array<double, 6>> camera;  ///< eye, target
+  std::string preset = "ct";                    ///< colors of volumes: ct or mr
+  std::string colors = "none";                  ///< of surfaces: stress, gap, adhesion
+  std::int64_t voxels = 2'000'000;              ///< at most, of all warped volumes
+  std::optional<double> grab_radius;            ///< [m]
+  std::optional<double> grab_stiffness;         ///< [N/m]
+  std::optional<std::array<double, 4>> ball;    ///< center and radius of a ball to push with
+  /// Centers of the outer and the inner finger, and their radius.
+  std::optional<std::array<double, 7>> fingers;
+  double skin_stiffness = 500;                                        ///< between the fingers [N/m]
+  std::string screenshot, film, record, replay, checkpoint, restart;  ///< files; empty: none
   std::string screens;            ///< room file or name of one that ships; empty: none
   std::string address;            ///< that a master listens at, in place of the room's
   std::string key;                ///< file of keys; empty: none
@@ -36,6 +40,7 @@ struct ViewOptions {
   bool ends_with_master = false;  ///< of a screen that the master started
   bool timing = false;            ///< says at the end what took how long
   bool tracker = false;           ///< sends poses of the head instead of showing a screen
+  std::string devices;            ///< names between commas, see DeviceHand
   std::string make_keys;          ///< name of key files to write, instead of all else
 
   bool operator==(const ViewOptions&) const = default;

@@ -39,6 +39,19 @@ VolumeColors::VolumeColors(const std::string& preset, double low, double high) {
   }
 }
 
+Points VolumeColors::curve() const {
+  const double first = points_.front().sample, last = points_.back().sample;
+  Points curve = points_;
+  for (ColorPoint& point : curve) point.sample = (point.sample - first) / (last - first);
+  return curve;
+}
+
+void VolumeColors::set_curve(const Points& curve) {
+  const double first = points_.front().sample, last = points_.back().sample;
+  points_ = curve;
+  for (ColorPoint& point : points_) point.sample = first + (last - first) * point.sample;
+}
+
 void VolumeColors::set_window(double level, double width) {
   level_ = level;
   width_ = width;

@@ -43,6 +43,26 @@ def test_the_transpose_gives_the_same_products(volume, mesh, twisted, interpolat
     assert abs(np.vdot(forward, y) - np.vdot(x, adjoint)) < 1e-14 * scale
 
 
+def test_conservative_shares_are_the_warp_and_keep_the_total(volume, mesh, twisted, samples):
+    mask = np.random.default_rng(3).random(volume.shape) < 0.5
+    all_of, part = (tetwarp.WarpOperator(volume, *mesh, twisted, intensity="conservative", mask=m)
+                    for m in (None, mask))
+    y = np.random.default_rng(4).standard_normal(volume.shape)
+
+    forward, masked = all_of.forward(samples), part.forward(samples)
+
+    wide = tetwarp.Volume(samples, volume.grid)
+    expected = tetwarp.warp(wide, *mesh, twisted, intensity="conservative")
+    assert np.allclose(forward, expected.volume, rtol=0, atol=2.0**-42 * np.abs(samples).max())
+    assert forward.sum() == pytest.approx(expected.report["totals"]["after"][0]
+                                          / np.prod(volume.grid.spacing), rel=1e-12)
+    assert np.array_equal(masked, np.where(mask, forward, 0))
+    for operator, values in ((all_of, forward), (part, masked)):
+        scale = np.linalg.norm(values) * np.linalg.norm(y)
+        products = np.vdot(values, y), np.vdot(samples, operator.adjoint(y))
+        assert abs(products[0] - products[1]) < 1e-14 * scale
+
+
 def test_bits_do_not_depend_on_threads(volume, mesh, twisted, samples):
     one, three = (tetwarp.WarpOperator(volume, *mesh, twisted, interpolator="cubic", threads=n)
                   for n in (1, 3))
@@ -100,6 +120,8 @@ def test_results_go_where_they_should(volume, mesh, twisted, samples):
     ({"interpolator": "labels"}, "filter: labels is not linear"),
     ({"interpolator": "sinc"}, "interpolator: "),
     ({"outside": "falloff"}, "outside: the operator has no displacements beyond the mesh"),
+    ({"intensity": "density"}, "intensity: the operator has no densities; choose value or"),
+    ({"intensity": "conservative", "outside": "identity"}, "intensity: to keep the total, outside"),
     ({"mask": np.ones((2, 3, 4), bool)}, r"mask: expected bool of shape \(20, 24, 32\)"),
     ({"spacing": (1, 1, 1)}, "source: it has a grid; leave out spacing"),
     ({"deformed": np.zeros((3, 3))}, "deformed: expected"),
@@ -120,4 +142,7 @@ def test_bad_samples_are_named(volume, mesh, twisted, samples):
         operator.adjoint(samples, out=samples)
     with pytest.raises(ValueError, match="node_gradient: filter nearest has no slope"):
         tetwarp.WarpOperator(volume, *mesh, twisted, interpolator="nearest").node_gradient(
+            samples, samples)
+    with pytest.raises(ValueError, match="node_gradient: conservative shares have no derivatives"):
+        tetwarp.WarpOperator(volume, *mesh, twisted, intensity="conservative").node_gradient(
             samples, samples)

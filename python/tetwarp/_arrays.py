@@ -25,17 +25,19 @@ def describe(array: np.ndarray) -> str:
 _HOST_MEMORY = (1, 3, 11)
 
 
-def _is_foreign(value: Any) -> bool:
+def is_foreign(value: Any) -> bool:
     """Whether it is an array of another library, which DLPack shows."""
     return hasattr(value, "__dlpack__") and not isinstance(value, np.ndarray)
 
 
-def _check_host(value: Any, name: str) -> None:
+def check_host(value: Any, name: str, reason: str = "") -> None:
+    """Raises ValueError if an array of another library is not in memory of the host."""
     kind, number = value.__dlpack_device__()
     if int(kind) not in _HOST_MEMORY:
         raise ValueError(
             f"{name}: expected an array in memory of the host, got one of device {int(number)} "
             f"(DLPack type {int(kind)}); copy it to the host, such as by .cpu() or .get()"
+            + (f" ({reason})" if reason else "")
         )
 
 
@@ -43,9 +45,9 @@ def array_of(value: Any, name: str) -> np.ndarray:
     """An array of another library (PyTorch, JAX, CuPy) in place, by DLPack; anything else as NumPy
     takes it.
     """
-    if not _is_foreign(value):
+    if not is_foreign(value):
         return np.asarray(value)
-    _check_host(value, name)
+    check_host(value, name)
     try:
         return np.from_dlpack(value)
     except (BufferError, RuntimeError, TypeError) as error:
@@ -58,7 +60,7 @@ def _same(array: np.ndarray) -> np.ndarray:
 
 def maker_of(value: Any) -> Callable[[np.ndarray], Any]:
     """What makes an array of NumPy one of the library of `value`, in the same memory."""
-    if not _is_foreign(value):
+    if not is_foreign(value):
         return _same
     if hasattr(value, "__array_namespace__"):
         namespace = value.__array_namespace__()
@@ -67,22 +69,23 @@ def maker_of(value: Any) -> Callable[[np.ndarray], Any]:
     return getattr(namespace, "from_dlpack", _same)
 
 
+def check_samples(name: str, shape: tuple[int, ...], dtype: str) -> None:
+    """Raises ValueError if samples cannot have this shape and type."""
+    if dtype not in PIXEL_TYPES:
+        hint = "; use .view(numpy.uint8)" if dtype == "bool" else ""
+        raise ValueError(f"{name}: expected samples of {', '.join(PIXEL_TYPES)}, got {dtype}{hint}")
+    if len(shape) not in (3, 4):
+        raise ValueError(f"{name}: expected shape (z, y, x) or (z, y, x, components), got {shape}")
+    if len(shape) == 4 and not 1 <= shape[3] <= 9:
+        raise ValueError(f"{name}: expected 1 to 9 components, got shape {shape}")
+    if 0 in shape:
+        raise ValueError(f"{name}: expected at least one voxel along each axis, got {shape}")
+
+
 def samples_of(value: Any, name: str) -> np.ndarray:
     """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
     array = array_of(value, name)
-    if array.dtype.newbyteorder("=").name not in PIXEL_TYPES:
-        hint = "; use .view(numpy.uint8)" if array.dtype == bool else ""
-        raise ValueError(
-            f"{name}: expected samples of {', '.join(PIXEL_TYPES)}, got {array.dtype}{hint}"
-        )
-    if array.ndim not in (3, 4):
-        raise ValueError(
-            f"{name}: expected shape (z, y, x) or (z, y, x, components), got {array.shape}"
-        )
-    if array.ndim == 4 and not 1 <= array.shape[3] <= 9:
-        raise ValueError(f"{name}: expected 1 to 9 components, got shape {array.shape}")
-    if 0 in array.shape:
-        raise ValueError(f"{name}: expected at least one voxel along each axis, got {array.shape}")
+    check_samples(name, array.shape, array.dtype.newbyteorder("=").name)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
     return np.ascontiguousarray(array)
@@ -118,15 +121,16 @@ def integers_of(value: Any, name: str, dtype: Any = np.int32) -> np.ndarray:
 def nodes_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Positions of nodes: as points_of(), and finite."""
     array = points_of(value, name, count)
-    finite = np.isfinite(array).all(axis=1)
+    finite = np.isfinite(array)
     if not finite.all():
-        raise ValueError(f"{name}: expected finite positions, row {int(finite.argmin())} is not")
+        row = int(finite.all(axis=1).argmin())
+        raise ValueError(f"{name}: expected finite positions, row {row} is not")
     return array
 
 
 def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Positions of shape (n, 3), float64 in C order; copied only if they are not."""
-    array = array_of(value, name) if _is_foreign(value) else value
+    array = array_of(value, name) if is_foreign(value) else value
     try:
         array = np.asarray(array)
         if not np.can_cast(array.dtype, np.float64, "same_kind"):
@@ -188,7 +192,7 @@ def cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.nda
 
 def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Numbers as a flat float64 array in C order."""
-    plain = array_of(value, name) if _is_foreign(value) else value
+    plain = array_of(value, name) if is_foreign(value) else value
     try:
         array = np.ascontiguousarray(plain, dtype=np.float64).reshape(-1)
     except (TypeError, ValueError):
@@ -211,8 +215,8 @@ def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarra
     library its memory, as an array of NumPy.
     """
     shape, dtype = tuple(shape), np.dtype(dtype)
-    if _is_foreign(value):
-        _check_host(value, name)
+    if is_foreign(value):
+        check_host(value, name)
         try:
             value = _core.writable_array(value)
         except (TypeError, BufferError, RuntimeError) as error:

@@ -35,7 +35,8 @@ def autograd_warp(
     rest, cells : as in `warp`; arrays
     deformed : (n, 3) tensor, positions of the nodes
     spacing, origin, direction, affine : of the grid of `volume`, see Grid
-    options : the other keywords of WarpOperator: interpolator, outside, reference, mask, threads
+    options : the other keywords of WarpOperator: interpolator, outside, intensity, reference, mask,
+        threads; intensity ``"conservative"`` has a derivative by the samples only
 
     Returns
     -------

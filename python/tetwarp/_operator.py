@@ -27,7 +27,7 @@ def _source_grid(source: Any, spacing: Any, origin: Any, direction: Any, affine:
 
 class WarpOperator:
     """The matrix W of one deformation: ``W x`` are the samples that `warp` gives of the samples x,
-    in float64 and with 0 where no cell is. It is not stored.
+    in float64 and with 0 where no cell is. It is not stored, but see `intensity`.
 
     `forward` and `adjoint` use the same weights, and take every sum in one order: results have the
     same bits for any number of threads. SciPy takes the operator wherever it takes a
@@ -42,6 +42,9 @@ class WarpOperator:
     interpolator : ``"linear"``, ``"nearest"``, ``"cubic"``, ``"bspline"`` or ``"lanczos"``
     outside : ``"background"``: rows of voxels that no cell covers are zero; ``"identity"``: they
         take the source at the same position
+    intensity : ``"value"``; or ``"conservative"``: rows hold what the cells move into the box of an
+        output voxel from the boxes of voxels of the source, over its volume, so that totals are
+        kept. It does not use `interpolator`, and stores W, 16 bytes per pair of such voxels
     reference : Grid of the output, or something that has one; None: that of the source
     mask : bool of the shape of the output; rows of voxels where it is False are zero
     threads : 0: all processors
@@ -76,6 +79,7 @@ class WarpOperator:
         affine: Any = None,
         interpolator: str = "linear",
         outside: str = "background",
+        intensity: str = "value",
         reference: Any = None,
         mask: Any = None,
         threads: int = 0,
@@ -86,8 +90,8 @@ class WarpOperator:
         self._core = _core.WarpOperator(
             self._source._core(), points, *cells_of(cells, "cells", len(points)),
             nodes_of(deformed, "deformed", len(points)), interpolator=interpolator,
-            outside=outside, output_grid=self._output._core(), mask=self._mask_of(mask),
-            threads=integer_of(threads, "threads"),
+            intensity=intensity, outside=outside, output_grid=self._output._core(),
+            mask=self._mask_of(mask), threads=integer_of(threads, "threads"),
         )
 
     def _mask_of(self, mask: Any) -> np.ndarray:
@@ -154,7 +158,7 @@ class WarpOperator:
         held fixed: what nodes move within cells, not what they uncover at the surface of the mesh.
 
         For a misfit of ``W x`` to data pass its derivative by ``W x`` as y: of ``0.5 * sum((W x -
-        data)**2)`` this is ``W x - data``.
+        data)**2)`` this is ``W x - data``. There is none for intensity ``"conservative"``.
 
         >>> import tetwarp
         >>> rest, cells = tetwarp.lattice_mesh(tetwarp.phantom(shape=(8, 9, 10)), cells=2)

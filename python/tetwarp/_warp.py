@@ -10,7 +10,8 @@ import numpy as np
 
 from . import _core
 from ._arrays import cells_of, describe, integer_of, maker_of, nodes_of, number_of, out_of
-from ._grid import Grid, grid_from_core, reference_grid
+from ._device import Device, on_device, type_of
+from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._volume import Volume, volume_of
 
@@ -116,7 +117,8 @@ class Warper:
     Parameters
     ----------
     volume : Volume, or samples of shape (z, y, x) or (z, y, x, c), of 8- to 64-bit integers,
-        float32 or float64, of NumPy or by DLPack; or a list of these on one grid
+        float32 or float64, of NumPy or by DLPack; or a list of these on one grid. Arrays of
+        PyTorch and CuPy in the memory of a CUDA device stay there
     rest : (n, 3) node positions at rest, x y z [world]
     cells : (m, 4) tetrahedra, (m, 8) hexahedra, or a pair of both; integers
     spacing, origin, direction, affine : of the grid of arrays, see Grid
@@ -137,7 +139,7 @@ class Warper:
         ``"contravariant"`` (vectors), ``"finite-strain"``, ``"principal"`` (tensors); a word, or
         one per volume
     backend : ``"auto"``, ``"cpu"``, ``"cuda"`` or ``"reference"``
-    device : number of a CUDA device
+    device : number of a CUDA device; that of the volume, if it is on one
     threads : of the CPU, 0: all processors; any number gives the same bits
 
     Raises
@@ -180,27 +182,35 @@ class Warper:
         device: int = 0,
         threads: int = 0,
     ) -> None:
-        sources = _sources_of(volume, spacing, origin, direction, affine)
         given = list(volume) if isinstance(volume, (list, tuple)) else [volume]
+        self._device = Device(given[0], "volume") if given and on_device(given[0]) else None
+        if self._device is None:
+            sources = _sources_of(volume, spacing, origin, direction, affine)
+            self._arrays = [source.array for source in sources]
+            self._names = tuple(source.name for source in sources)
+            self._nifti = tuple(source.nifti for source in sources)
+            grid = sources[0].grid
+        else:
+            self._arrays = self._device.sources_of(given)
+            self._names, self._nifti = ("values",) * len(given), (None,) * len(given)
+            grid = make_grid(self._arrays[0].shape[:3], spacing, origin, direction, affine)
+            backend, device = self._device.backend(backend), self._device.number
+        self._grid = grid if reference is None else reference_grid(reference)
         self._makers = [maker_of(one) for one in given]
         points = nodes_of(rest, "rest")
-        self._arrays = [source.array for source in sources]
-        self._names = tuple(source.name for source in sources)
-        self._nifti = tuple(source.nifti for source in sources)
         self._node_count = len(points)
         self._warper: _core.Warper | None = _core.Warper(
-            self._arrays, sources[0].grid._core(), points,
+            self._arrays, grid._core(), points,
             *cells_of(cells, "cells", len(points)),
             interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
-            intensity=intensity, quantities=_quantities_of(quantity, len(sources)),
+            intensity=intensity, quantities=_quantities_of(quantity, len(given)),
             outside=outside, falloff=number_of(falloff, "falloff"),
             default_value=number_of(default_value, "default_value"),
-            output_grid=None if reference is None else reference_grid(reference)._core(),
+            output_grid=None if reference is None else self._grid._core(),
             backend=backend, device=integer_of(device, "device"),
             threads=integer_of(threads, "threads"),
         )
-        self._grid = grid_from_core(self._warper.output_grid)
-        self._is_source_grid = self._grid == sources[0].grid
+        self._is_source_grid = self._grid == grid
 
     @property
     def grid(self) -> Grid:
@@ -224,7 +234,8 @@ class Warper:
 
         Parameters
         ----------
-        deformed : (n, 3) positions of the nodes [world]; read in place if float64 in C order
+        deformed : (n, 3) positions of the nodes [world]; read in place if float64 in C order, also
+            on the device of the volume
         out : array to write to, of the shape and type of the output, in C order, of NumPy or by
             DLPack; for several volumes a list of them. None: new arrays, of the library of the
             source
@@ -244,18 +255,26 @@ class Warper:
             the Warper is closed, or a step of it is running.
         """
         warper = self._open()
-        positions = nodes_of(deformed, "deformed", self._node_count)
+        if self._device is not None and on_device(deformed):
+            shape = (self._node_count, 3)
+            positions = self._device.array_of(deformed, "deformed", shape, "float64")
+        else:
+            positions = nodes_of(deformed, "deformed", self._node_count)
         names = extras_of(outputs, EXTRAS)
         if "forward" in names and not self._is_source_grid:
             raise ValueError("outputs: 'forward' is on the grid of the source; give no reference")
         arrays = self._outputs(out)
         extras = {name: self._extra(name) for name in names}
-        report = warper.step(positions, arrays, extras, False, progress)
-        if out is None:
+        stream = 0 if self._device is None else self._device.stream
+        report = warper.step(positions, arrays, extras, False, stream, progress)
+        if out is None and self._device is not None:
+            volumes = tuple(arrays)
+        elif out is None:
             volumes = tuple(make(array) for make, array in zip(self._makers, arrays))
         else:
             volumes = tuple(out) if isinstance(out, (list, tuple)) else (out,)
-        extras = {name: self._makers[0](array) for name, array in extras.items()}
+        if self._device is None:
+            extras = {name: self._makers[0](array) for name, array in extras.items()}
         return WarpResult(
             volumes[0], self._grid, report, volumes, extras, self._names, self._nifti
         )
@@ -282,8 +301,11 @@ class Warper:
             raise RuntimeError("Warper: it is closed")
         return self._warper
 
-    def _outputs(self, out: Any) -> list[np.ndarray]:
-        shapes = [self._grid.shape + source.shape[3:] for source in self._arrays]
+    def _outputs(self, out: Any) -> list[Any]:
+        shapes = [self._grid.shape + tuple(source.shape[3:]) for source in self._arrays]
+        device = self._device
+        if out is None and device is not None:
+            return [device.empty_like(a, s) for s, a in zip(shapes, self._arrays)]
         if out is None:
             return [np.empty(s, a.dtype) for s, a in zip(shapes, self._arrays)]
         given = list(out) if isinstance(out, (list, tuple)) else [out]
@@ -291,15 +313,20 @@ class Warper:
             raise ValueError(f"out: expected {len(shapes)} arrays, got {len(given)}")
         for number, (array, shape, source) in enumerate(zip(given, shapes, self._arrays)):
             name = "out" if len(given) == 1 else f"out[{number}]"
+            if device is not None:
+                device.array_of(array, name, shape, type_of(source))
+                continue
             given[number] = out_of(array, name, shape, source.dtype)
             others = self._arrays + given[:number]
             if any(np.may_share_memory(given[number], other) for other in others):
                 raise ValueError(f"{name}: shares memory with a source or another output")
         return given
 
-    def _extra(self, name: str) -> np.ndarray:
+    def _extra(self, name: str) -> Any:
         dtype, components = EXTRAS[name]
         shape = self._grid.shape + ((components,) if components > 1 else ())
+        if self._device is not None:
+            return self._device.empty(shape, np.dtype(dtype).name)
         return np.empty(shape, dtype)
 
 

@@ -6,10 +6,12 @@
 The master starts the screens left and front; the screen right, in stereo, joins by a key, is killed
 and joins again.
 """
+import itertools
 import math
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -28,6 +30,9 @@ CAMERA_EYE, CAMERA_TARGET, METER = (0, 0, 0), (0, 0.15, 0), 0.1
 BALLS = {"orange": ((-0.18, 0.17, 0.01), 0.05),  # across the edge of left and front
          "blue": ((0.02, 0.2, 0.03), 0.01),      # on front
          "green": ((0.3, 0.05, 0.02), 0.025)}    # on right
+
+
+TISSUE, TISSUE_RADIUS = (-0.18, 0.17, -0.075), 0.03  # a volume across the edge of left and front
 
 
 def world_of(x):
@@ -66,12 +71,40 @@ def seen(screen, x, shift=0):
     return dot(place, across) / dot(across, across), 1 - dot(place, up) / dot(up, up)
 
 
+def write_tissue(folder):
+    """A ball of tissue in air, whose rim is soft, as NIfTI: a volume across the edge of left and
+    front."""
+    n, size, (x, y, z) = 24, 2.4 * TISSUE_RADIUS, TISSUE
+    spacing = size / n
+    samples = bytearray()
+    for k, j, i in itertools.product(range(n), repeat=3):
+        away = math.dist((i + 0.5, j + 0.5, k + 0.5), (n / 2, n / 2, n / 2)) * spacing
+        value = min(max((TISSUE_RADIUS - away) / (3 * spacing) + 0.5, 0), 1)
+        samples += struct.pack("<h", round(1000 * value))
+    # NIfTI-1: sizes, int16, spacings, offset, slope, meters, rows of the matrix.
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, n, n, n, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 4, 16)
+    struct.pack_into("<8f", header, 76, 1, spacing, spacing, spacing, 1, 1, 1, 1)
+    struct.pack_into("<2f", header, 108, 352, 1)
+    header[123] = 1
+    struct.pack_into("<h", header, 254, 1)
+    for row, center in enumerate((x, y, z)):
+        numbers = [spacing * (column == row) for column in range(3)]
+        struct.pack_into("<4f", header, 280 + 16 * row, *numbers, center - size / 2 + spacing / 2)
+    header[344:348] = b"n+1\0"
+    (folder / "tissue.nii").write_bytes(header + samples)
+    return """{"name": "tissue", "kind": "fem", "volume": {"file": "tissue.nii", "threshold": 300},
+               "lattice": {"cells": [2, 2, 2]}, "material": {"E": 1e4, "nu": 0.3, "density": 1000}}"""
+
+
 def write_files(folder):
     bodies = ",".join(
         f"""{{"name": "{name}", "kind": "rigid", "shape": {{"type": "ellipsoid",
              "radii": [{radius}, {radius}, {radius}]}}, "density": 1000,
              "pose": {{"position": {list(center)}}}}}"""
-        for name, (center, radius) in BALLS.items())
+        for name, (center, radius) in BALLS.items()) + "," + write_tissue(folder)
     (folder / "scene.json").write_text(
         f"""{{"tetwarp_scene": 1, "time_step": 0.01, "duration": 1, "gravity": [0, 0, 0],
               "bodies": [{bodies}]}}""", encoding="ascii")
@@ -119,6 +152,32 @@ def check_pictures(folder):
     difference = sum(abs(a - b) for n in both for a, b in zip(edges[0][n], edges[1][n]))
     if difference / (3 * len(both)) > 4:
         fail(f"edge: the pictures differ by {difference / (3 * len(both)):.1f} of 255")
+    check_volume_edge(shown, edges)
+
+
+def mean_difference(first, second, rows):
+    """Of the colors of two columns of pixels [of 255]."""
+    away = [abs(a - b) for n in rows for a, b in zip(first[n], second[n])]
+    return sum(away) / len(away)
+
+
+def check_volume_edge(shown, edges):
+    """The volume across the edge of left and front: pixels on both sides differ by not much more than
+    neighbors within one picture."""
+    low, high = (seen("front", tuple(a + b for a, b in zip(TISSUE, (0, 0, side * TISSUE_RADIUS))))[1]
+                 for side in (0.6, -0.6))
+    rows = range(math.ceil(PIXELS * low), int(PIXELS * high))
+    air = edges[0][4]
+    covered = [max(abs(a - b) for a, b in zip(edges[0][n], air)) for n in rows]
+    if len(rows) < 15 or min(covered) < 20:
+        fail(f"volume: {len(rows)} rows at the edge, which differ by {min(covered)} from air")
+    inner = [[row[column] for row in shown[name]] for name, column in (("left", -2), ("front", 1))]
+    across = mean_difference(*edges, rows)
+    beside = [mean_difference(inner[n], edges[n], rows) for n in (0, 1)]
+    print(f"volume at the edge: {len(rows)} rows, mean difference {across:.2f} of 255 across it, "
+          f"{beside[0]:.2f} and {beside[1]:.2f} beside it")
+    if across > 1.5 * max(beside) + 1:
+        fail("volume: the pictures differ at the edge")
 
 
 def free_port():
@@ -140,9 +199,9 @@ def end(process, what):
         fail(f"{what}: status {status}: {process.stderr.read()}")
 
 
-def start(command, words, environment, folder):
+def start(command, words, environment, folder, **options):
     return subprocess.Popen([command, "view", *words], env=environment, cwd=folder,
-                            stderr=subprocess.PIPE, text=True)
+                            stderr=subprocess.PIPE, text=True, **options)
 
 
 def check_room(command, environment, folder):

@@ -127,6 +127,7 @@ def check_pull(command, environment, folder, body):
                     key s key s mouseup 1 key s key s key x key i key comma key x keydown q""".split(),
                 env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
             status = window.wait(SECONDS)
+            subprocess.run(["xdotool", "keyup", "q"], env=environment, timeout=SECONDS, check=True)
         finally:
             window.kill()
         problems = window.stderr.read()
@@ -144,6 +145,51 @@ def check_pull(command, environment, folder, body):
         fail("replay: another state than the recorded one")
 
 
+def check_colors(command, environment, folder):
+    """The key k colors the block by its stress: it stands on its foot, so that the colors of
+    both ends of the scale are there."""
+    words = ["scene.json", "--fast", "--steps", "30", "--size", "320,240", "--screenshot",
+             "stress.png", "--colors", "stress"]
+    done = view(command, words, environment, folder)
+    if done.returncode != 0:
+        fail(f"colors: status {done.returncode}: {done.stderr}")
+    width, rows = pixels_of(folder / "stress.png")
+    inner = [p for row in rows for p in row[:width * 4 // 5]]  # without the legend
+    blue = sum(b > 70 and b > 1.5 * r and b > 1.2 * g for r, g, b in inner)
+    warm = sum(r > 70 and r > 1.8 * b for r, g, b in inner)
+    if blue < 200 or warm < 50:
+        fail(f"colors: {blue} pixels of low stress, {warm} of high stress")
+
+
+def check_device(command, environment, folder):
+    """A simulated device pulls at what is in the middle of the window, and the run is filmed; its
+    record gives the same bits, and a replay writes its pictures one by one."""
+    (folder / "motion.txt").write_text("0.1 0 0 0 0 0.5 0 0\n0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n"
+                                       "0.1 0.5 1 0 0 0 0 1\n0 0 0 0 0 0 0 0\n", encoding="ascii")
+    words = ["scene.json", "--fast", "--steps", "20", "--size", "320,240", "--devices", "motion.txt",
+             "--record", "device.txt", "--film", "device.gif", "--checkpoint", "first.bin"]
+    done = view(command, words, environment, folder)
+    if done.returncode != 0 or done.stderr:
+        fail(f"device: status {done.returncode}: {done.stderr}")
+    text = (folder / "device.txt").read_text(encoding="ascii")
+    for word in (" grab block ", " move ", " release\n", "20 end\n"):
+        if word not in text:
+            fail(f"device: no '{word.strip()}' in\n{text}")
+    if (folder / "device.gif").read_bytes()[:6] != b"GIF89a":
+        fail("device: no film")
+    done = view(command, ["scene.json", "--replay", "device.txt", "--size", "320,240", "--film",
+                          "frames.png", "--checkpoint", "second.bin"], environment, folder)
+    if done.returncode != 0:
+        fail(f"device replay: status {done.returncode}: {done.stderr}")
+    if (folder / "first.bin").read_bytes() != (folder / "second.bin").read_bytes():
+        fail("device replay: another state than the recorded one")
+    if len(orange_pixels(folder / "frames_0000.png")) < 2000:
+        fail("film: its first picture does not show the body")
+    missing = view(command, ["scene.json", "--devices", "nothing.txt"], environment, folder)
+    if missing.returncode != 1 or "nothing.txt" not in missing.stderr:
+        fail(f"missing device: status {missing.returncode}, {missing.stderr!r}")
+
+
 def main():
     command = str(Path(sys.argv[1]).resolve())
     with tempfile.TemporaryDirectory(prefix="tetwarp-window-") as name:
@@ -157,6 +203,8 @@ def main():
         with Display() as environment:
             body = check_picture(command, environment, folder)
             check_pull(command, environment, folder, body)
+            check_device(command, environment, folder)
+            check_colors(command, environment, folder)
 
 
 if __name__ == "__main__":

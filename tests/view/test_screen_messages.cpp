@@ -65,6 +65,18 @@ TEST(ScreenMessage, IsTheSameAfterItsBytes) {
   again<WhoMessage>(ToScreen(WhoMessage{}), to_screen);
 }
 
+TEST(ScreenMessage, OfAnUnknownKindIsRefused) {
+  Bytes bytes = bytes_of(ToScreen(EndMessage{}));
+  for (std::size_t kind = 0; kind < 256; ++kind) {
+    bytes[4] = static_cast<std::byte>(kind);  // behind the letters
+    if (kind == ToScreen(EndMessage{}).index() || kind == ToScreen(WhoMessage{}).index()) {
+      EXPECT_EQ(to_screen(bytes).index(), kind);
+    } else {
+      EXPECT_THROW(to_screen(bytes), std::invalid_argument) << kind;
+    }
+  }
+}
+
 TEST(ScreenMessage, NumbersOutOfRangeAreRefused) {
   FrameMessage frame{1, 1, {}, 0.06, {}, {}, {}};
   const auto is_refused = [](const FrameMessage& message) {

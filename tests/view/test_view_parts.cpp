@@ -1,8 +1,10 @@
 /// @file test_view_parts.cpp
-/// Live windows without a window: hand-over between threads, input and its repetition, picking.
+/// Live windows without a window: hand-over between threads, input, picking, colors and rays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>
@@ -14,7 +16,6 @@
 
 #include "host/base/point3.hpp"
 #include "host/view/input_log.hpp"
-#include "host/view/live_simulation.hpp"
 #include "host/view/live_volumes.hpp"
 #include "host/view/pick.hpp"
 #include "host/view/ray_quality.hpp"
@@ -23,7 +24,6 @@
 #include "host/view/view_options.hpp"
 #include "host/view/volume_colors.hpp"
 #include "tests/support/run_command.hpp"
-#include "tests/view/live_scene.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -72,6 +72,7 @@ TEST(ViewOptions, AreTheSameAfterTheirWords) {
   options.max_step_seconds = 0.1;
   options.paused = true;
   options.steps = 0;
+  options.fingers = {{1, 2, 3, 4, 5, 6, 0.5}};
   options.camera = {{0.1, -2, 1e-30, 4, 5, 1.0 / 3}};
   options.grab_radius = 0.7;
   options.record = "input.txt";
@@ -99,7 +100,8 @@ InputLog some_input() {
                 {.tick = 13,
                  .kind = InputKind::carry,
                  .handle = {.body = "ball"},
-                 .displacement = {0.25, 1e-9, 0}}};
+                 .displacement = {0.25, 1e-9, 0}},
+                {.tick = 13, .kind = InputKind::limit, .limit = {12, -1}}};
   log.ticks = 20;
   return log;
 }
@@ -222,36 +224,6 @@ TEST(VolumeColors, FollowHounsfieldUnitsAndTheWindow) {
   EXPECT_EQ(other.gray()[1], largest_sample);
 }
 
-TEST(LiveSimulation, StepsOnOrderAndPullsWhatIsGrabbed) {
-  ViewOptions options;
-  options.paused = true;
-  LiveSimulation simulation(live_scene(), options, {});
-  simulation.begin();
-  const LiveFrame first = frame_at(simulation, 0);
-  EXPECT_TRUE(first.is_paused);
-  ASSERT_EQ(first.volumes.size(), 1u);
-  EXPECT_EQ(first.points.size(), 2u);
-  Point3 top = first.points[0][0];
-  for (const Point3& x : first.points[0]) top = x[2] > top[2] ? x : top;
-  simulation.give({.kind = OrderKind::grab, .body = 0, .point = top});
-  simulation.give({.kind = OrderKind::pull, .point = {top[0], top[1], top[2] + 0.1}});
-  simulation.give({.kind = OrderKind::step});
-  simulation.give({.kind = OrderKind::step});
-  const LiveFrame pulled = frame_at(simulation, 2);
-  EXPECT_EQ(pulled.step, 2);
-  ASSERT_TRUE(pulled.grab);
-  EXPECT_GT(pulled.grab->force[2], 0);
-  EXPECT_EQ(pulled.message, "");
-  simulation.give({.kind = OrderKind::release});
-  simulation.give({.kind = OrderKind::restart});
-  simulation.give({.kind = OrderKind::step});
-  const LiveFrame again = frame_at(simulation, 3);
-  EXPECT_EQ(again.step, 1);
-  EXPECT_FALSE(again.grab);
-  simulation.end();
-  EXPECT_EQ(simulation.log().events.size(), 4u);
-}
-
 /// Cost of a picture by its rays, in units of the finest one.
 double cost_of(const RaySpacing& rays) {
   return 1 / (rays.step * rays.pixels * rays.pixels);
@@ -275,82 +247,6 @@ TEST(RayQuality, SettlesWhereThePictureIsInTime) {
       EXPECT_LE(quality.resting().pixels, settled.pixels);
     }
   }
-}
-
-/// The mouse takes a scripted ball into a block: the ball follows at a limited speed, pushes, and
-/// stays where it was let go; a replay has the same bits.
-TEST(LiveSimulation, CarriesAScriptedBodyThatPushes) {
-  Scene scene = live_scene();
-  scene.bodies[1].kind = BodyKind::scripted;
-  scene.bodies[1].rigid = {};
-  scene.gravity = {0, 0, 0};
-  ViewOptions options;
-  options.paused = true;
-  LiveSimulation simulation(scene, options, {});
-  simulation.begin();
-  const double top = bounds_of(frame_at(simulation, 0).points[0]).high[2];
-  simulation.give({.kind = OrderKind::grab, .body = 1, .point = {0, 0, 0.2}});
-  simulation.give({.kind = OrderKind::pull, .point = {0, 0, 0.16}});
-  std::int64_t tick = 0;
-  double below = 0.2;
-  for (; tick < 10; ++tick) {
-    simulation.give({.kind = OrderKind::step});
-    const LiveFrame& frame = frame_at(simulation, tick + 1);
-    ASSERT_TRUE(frame.grab);
-    // Five sizes, the diagonals of the box of the ball, a second.
-    EXPECT_LE(below - frame.grab->point[2], 5 * 0.06 * std::sqrt(3) * 0.01 + 1e-12);
-    below = frame.grab->point[2];
-  }
-  EXPECT_NEAR(below, 0.16, 1e-12);
-  const LiveFrame pushed = simulation.frames().front();
-  EXPECT_GT(pushed.grab->force[2], 0);
-  double under = 0;  // the top of the block, below the ball
-  for (const Point3& x : pushed.points[0]) {
-    if (std::hypot(x[0], x[1]) < 0.01) under = std::max(under, x[2]);
-  }
-  EXPECT_LT(under, top - 0.015);
-  simulation.give({.kind = OrderKind::release});
-  simulation.give({.kind = OrderKind::step});
-  EXPECT_FALSE(frame_at(simulation, tick + 1).grab);
-  EXPECT_NEAR(bounds_of(simulation.frames().front().points[1]).low[2], 0.1, 1e-3);
-  simulation.end();
-
-  options.paused = false;
-  LiveSimulation repeated(scene, options, simulation.log());
-  repeated.begin();
-  while (!frame_at(repeated, 0).is_last) {
-  }
-  repeated.end();
-  EXPECT_EQ(repeated.checkpoint(), simulation.checkpoint());
-}
-
-TEST(LiveSimulation, RepeatsItsInputBitForBit) {
-  ViewOptions options;
-  options.paused = true;
-  LiveSimulation recorded(live_scene(), options, {});
-  recorded.begin();
-  const LiveFrame first = frame_at(recorded, 0);
-  recorded.give({.kind = OrderKind::step});
-  frame_at(recorded, 1);
-  recorded.give({.kind = OrderKind::grab, .body = 1, .point = {0, 0, 0.2}});
-  for (int n = 1; n <= 8; ++n) {
-    recorded.give({.kind = OrderKind::pull, .point = {0.01 * n, 0, 0.2}});
-    recorded.give({.kind = OrderKind::step});
-    frame_at(recorded, 1 + n);
-  }
-  recorded.give({.kind = OrderKind::release});
-  recorded.give({.kind = OrderKind::step});
-  recorded.end();  // after the step
-  EXPECT_EQ(recorded.log().ticks, 10);
-
-  options.paused = false;
-  LiveSimulation repeated(live_scene(), options, recorded.log());
-  repeated.begin();
-  while (!frame_at(repeated, 0).is_last) {
-  }
-  repeated.end();
-  EXPECT_EQ(repeated.log().events, recorded.log().events);
-  EXPECT_EQ(repeated.checkpoint(), recorded.checkpoint());
 }
 
 }  // namespace

@@ -44,10 +44,12 @@ std::string find_viewer() {
 /// Replaces this process.
 int run_view(const view::ViewOptions& options) {
   std::vector<std::string> inputs;
-  for (const std::string& file : {options.scene_file, options.replay, options.key}) {
+  for (const std::string& file :
+       {options.scene_file, options.replay, options.restart, options.key}) {
     if (!file.empty()) inputs.push_back(file);
   }
-  for (const std::string& file : {options.screenshot, options.record, options.checkpoint}) {
+  for (const std::string& file :
+       {options.screenshot, options.film, options.record, options.checkpoint}) {
     if (!file.empty()) check_output_file(file, inputs);
   }
   std::vector<std::string> words = view::words_of(options);
@@ -86,10 +88,15 @@ void declare_picture(CLI::App& app, view::ViewOptions& options) {
   app.add_option("--preset", options.preset, "colors of volumes [ct]")
       ->check(CLI::IsMember({"ct", "mr"}).description(""))
       ->type_name("ct|mr");
+  app.add_option("--colors", options.colors, "colors of surfaces at the start [none]")
+      ->check(CLI::IsMember({"none", "stress", "gap", "adhesion"}).description(""))
+      ->type_name("none|stress|gap|adhesion");
   app.add_option("--voxels", options.voxels, "most voxels of all warped volumes, about [2000000]")
       ->check(between(1000, 1'000'000'000))
       ->type_name("N");
   app.add_option("--screenshot", options.screenshot, "picture of the end")->type_name("FILE.png");
+  app.add_option("--film", options.film, "film of the window; .png: pictures with numbers")
+      ->type_name("FILE.gif|FILE.png");
 }
 
 void declare_simulation(CLI::App& app, view::ViewOptions& options) {
@@ -129,9 +136,28 @@ void declare_input(CLI::App& app, view::ViewOptions& options) {
       ->delimiter(',')
       ->check(finite_number())
       ->type_name("X,Y,Z,R");
+  app.add_option_function<std::array<double, 7>>(
+         "--fingers",
+         [&options](const std::array<double, 7>& fingers) { options.fingers = fingers; },
+         "centers of an outer finger, which the mouse carries, and of an inner one, and their "
+         "radius [none]")
+      ->delimiter(',')
+      ->check(finite_number())
+      ->type_name("X,Y,Z,IX,IY,IZ,R");
+  app.add_option("--skin-stiffness", options.skin_stiffness,
+                 "of the spring between the fingers, N/m [500]")
+      ->check(above_zero())
+      ->type_name("K");
+  app.add_option("--devices", options.devices,
+                 "gamepad, spacemouse or a file of motions, with commas between them [none]")
+      ->type_name("NAME,...");
   app.add_option("--record", options.record, "write what the mouse did, by step")
       ->type_name("FILE");
   app.add_option("--replay", options.replay, "repeat it: same results")->type_name("FILE");
+  app.add_option("--restart", options.restart,
+                 "start from the state of a --checkpoint of the same scene")
+      ->check(CLI::ExistingFile.description(""))
+      ->type_name("FILE");
   app.add_option("--checkpoint", options.checkpoint,
                  "file for the state at the end, for tetwarp simulate --restart")
       ->type_name("FILE");
@@ -162,13 +188,16 @@ void declare_screens(CLI::App& app, view::ViewOptions& options) {
 
 void check_view(const view::ViewOptions& options) {
   const bool has_limit = options.max_step_seconds < std::numeric_limits<double>::infinity();
-  if (has_limit && (!options.record.empty() || !options.replay.empty())) {
-    throw CLI::ValidationError("--max-step-seconds",
-                               "steps that end by the clock cannot be repeated; leave it out with "
-                               "--record and --replay");
+  if (has_limit && !options.replay.empty()) {
+    throw CLI::ValidationError(
+        "--max-step-seconds",
+        "steps of a replay end where those of its record did; leave it out with --replay");
   }
   if (options.ball && !((*options.ball)[3] > 0)) {
     throw CLI::ValidationError("--ball", "the radius, its last number, is above 0");
+  }
+  if (options.fingers && !((*options.fingers)[6] > 0)) {
+    throw CLI::ValidationError("--fingers", "the radius, its last number, is above 0");
   }
   if (!options.make_keys.empty() && !(options.join.empty() && options.screens.empty())) {
     throw CLI::ValidationError("--make-keys", "only writes keys; leave out --join and --screens");
@@ -196,6 +225,9 @@ void check_view(const view::ViewOptions& options) {
   }
   if (!options.screenshot.empty() && !options.screenshot.ends_with(".png")) {
     throw CLI::ValidationError("--screenshot", "the name of a picture ends in .png");
+  }
+  if (!options.film.empty() && !options.film.ends_with(".gif") && !options.film.ends_with(".png")) {
+    throw CLI::ValidationError("--film", "the name of a film ends in .gif or .png");
   }
 }
 }  // namespace

@@ -118,7 +118,7 @@ bool DividedStep::make_part(const StepPart& of, int parts, StepAttempt& made) {
   made.is_good = division_.is_good(made, contact, of.time_step, bodies_.state()) && made.is_good;
   // An attempt with twice as many parts takes at least twice as long.
   made.is_given_up = !made.is_good && division_.can_double(parts) &&
-                     (!made.is_finite || clock_.allows(2 * attempt_.seconds()));
+                     (!made.is_finite || clock_.may_divide(2 * attempt_.seconds()));
   if (made.is_given_up || !made.is_finite) return false;
   bodies_.end_part(of, made.sums);
   return true;

@@ -32,6 +32,14 @@ class Simulator::Impl {
         records(scene, count, *bodies, steps.last()),
         places(scene, count, *bodies) {}
 
+  /// @param limit  nothing: the clock
+  bool step(const std::optional<StepLimit>& limit) {
+    clock.follow(limit);
+    if (!steps.step()) return false;
+    records.forget();
+    return true;
+  }
+
   std::uint64_t own_fingerprint() {
     if (!fingerprint) fingerprint = fingerprint_of(scene);
     return *fingerprint;
@@ -113,9 +121,16 @@ std::string Simulator::device() const {
 }
 
 bool Simulator::step() {
-  if (!impl_->steps.step()) return false;
-  impl_->records.forget();
-  return true;
+  return impl_->step({});
+}
+bool Simulator::step(const StepLimit& limit) {
+  if (!impl_->clock.is_limited()) {
+    throw std::invalid_argument("step: ends at counts only where max_step_seconds is finite");
+  }
+  return impl_->step(limit);
+}
+StepLimit Simulator::step_limit() const {
+  return impl_->clock.limit();
 }
 const StepRecord& Simulator::record() {
   return impl_->records.get();

@@ -3,9 +3,9 @@
 #include "host/view/screens/scene_sharer.hpp"
 
 #include <algorithm>
-#include <tetwarp/surface.hpp>
 
 #include "host/base/point3.hpp"
+#include "host/view/surface_binding.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -36,9 +36,7 @@ std::size_t largest(const std::vector<Point3>& points, const Measure& measure) {
 void bind_surface(const BodyMesh& mesh, SharedBody& body) {
   body.form = BodyForm::nodes;
   body.moving_count = static_cast<std::int64_t>(mesh.mesh.rest_positions.size());
-  const bool is_boundary = boundary_surface(mesh.mesh).points == mesh.surface.points;
-  BoundPoints bound =
-      is_boundary ? bind_boundary(mesh.mesh) : bind_points(mesh.mesh, mesh.surface.points);
+  BoundPoints bound = surface_binding(mesh);
   body.nodes = std::move(bound.nodes);
   body.weights = std::move(bound.weights);
 }

@@ -1,87 +1,75 @@
 /// @file screen_message.cpp
-/// A message is four letters, the number of its kind in the variant, and its members.
+/// A message is four letters and the variant.
 #include "host/view/screens/screen_message.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <concepts>
+#include <type_traits>
 
 #include "host/base/point3.hpp"
 
 namespace tetwarp::view {
+
+// Each of these functions writes with a ByteWriter and reads with a ByteReader.
+
+template <class Stream, class Value>
+requires std::same_as<std::remove_const_t<Value>, JoinMessage>
+void exchange_members(Stream& stream, Value& message) {
+  auto& [screen, session] = message;
+  stream(screen, session);
+}
+
+/// Display and host are not needed where the screen is.
+template <class Stream, class Value>
+requires std::same_as<std::remove_const_t<Value>, Screen>
+void exchange_members(Stream& stream, Value& screen) {
+  auto& [name, lower_left, lower_right, upper_right, stereo, window, is_fullscreen, has_border,
+         display, host] = screen;
+  stream(name, lower_left, lower_right, upper_right, stereo, window, is_fullscreen, has_border);
+}
+
+template <class Stream, class Value>
+requires std::same_as<std::remove_const_t<Value>, WelcomeMessage>
+void exchange_members(Stream& stream, Value& message) {
+  auto& [session, screen, wait, scene] = message;
+  stream(session, screen, wait, scene);
+}
+
+template <class Stream, class Value>
+requires std::same_as<std::remove_const_t<Value>, RefuseMessage>
+void exchange_members(Stream& stream, Value& message) {
+  stream(message.reason);
+}
+
+template <class Stream, class Value>
+requires std::same_as<std::remove_const_t<Value>, FrameMessage>
+void exchange_members(Stream& stream, Value& message) {
+  auto& [session, frame, head, eye_separation, place, look, state] = message;
+  auto& [volumes, shows_contacts, level, width, cut, curve] = look;
+  stream(session, frame, head, eye_separation, place, volumes, shows_contacts, level, width, cut,
+         curve, state);
+}
+
 namespace {
-constexpr std::array<char, 4> letters{'t', 'w', 's', '1'};
+constexpr std::array<char, 4> own_letters{'t', 'w', 's', '2'};
+constexpr std::size_t most_curve_points = 64;
 
-void write(ByteWriter& to, const JoinMessage& message) {
-  to.add_text(message.screen);
-  to.add(message.session);
-}
-void write(ByteWriter& to, const ReadyMessage& message) {
-  to.add(message.frame);
-}
-void write(ByteWriter&, const AliveMessage&) {}
-void write(ByteWriter&, const LeaveMessage&) {}
-void write(ByteWriter& to, const HeadMessage& message) {
-  to.add(message.head);
-}
-void write(ByteWriter& to, const WelcomeMessage& message) {
-  const Screen& screen = message.screen;
-  to.add(message.session);
-  to.add_text(screen.name);
-  to.add(screen.lower_left);
-  to.add(screen.lower_right);
-  to.add(screen.upper_right);
-  to.add(screen.stereo);
-  to.add(screen.window);
-  to.add(static_cast<std::uint8_t>(screen.is_fullscreen));
-  to.add(static_cast<std::uint8_t>(screen.has_border));
-  to.add(message.wait);
-  to.add_list(message.scene);
-}
-void write(ByteWriter& to, const RefuseMessage& message) {
-  to.add_text(message.reason);
-}
-void write(ByteWriter& to, const FrameMessage& message) {
-  to.add(message.session);
-  to.add(message.frame);
-  to.add(message.head);
-  to.add(message.eye_separation);
-  to.add(message.place);
-  to.add(message.look.volumes);
-  to.add(static_cast<std::uint8_t>(message.look.shows_contacts));
-  to.add(message.look.level);
-  to.add(message.look.width);
-  to.add(static_cast<std::uint8_t>(message.look.cut.has_value()));
-  to.add(message.look.cut.value_or(Cut{}));
-  to.add_list(message.state);
-}
-void write(ByteWriter& to, const SwapMessage& message) {
-  to.add(message.frame);
-}
-void write(ByteWriter&, const EndMessage&) {}
-void write(ByteWriter&, const WhoMessage&) {}
-
-HeadPose read_head(ByteReader& from) {
-  const auto head = from.get<HeadPose>();
+void check_head(const HeadPose& head) {
   double size = 0;
   for (const double part : head.rotation) size += part * part;
   require(is_in_world(head.position) && std::abs(size - 1) < 1e-3, "no pose of a head");
-  return head;
 }
 
-WelcomeMessage read_welcome(ByteReader& from) {
-  WelcomeMessage message;
-  Screen& screen = message.screen;
-  message.session = from.get<std::uint64_t>();
-  screen.name = from.get_text();
-  screen.lower_left = from.get<Point3>();
-  screen.lower_right = from.get<Point3>();
-  screen.upper_right = from.get<Point3>();
-  screen.stereo = from.get<Stereo>();
-  screen.window = from.get<std::array<std::int32_t, 4>>();
-  screen.is_fullscreen = from.get_bool();
-  screen.has_border = from.get_bool();
-  message.wait = from.get<double>();
-  message.scene = from.get_list<std::byte>();
+void check_message(const auto&) {}
+
+void check_message(const HeadMessage& message) {
+  check_head(message.head);
+}
+
+void check_message(const WelcomeMessage& message) {
+  const Screen& screen = message.screen;
   require(is_in_world(screen.lower_left) && is_in_world(screen.lower_right) &&
               is_in_world(screen.upper_right) && screen.stereo <= Stereo::right &&
               message.wait > 0 && message.wait <= 60,
@@ -91,49 +79,55 @@ WelcomeMessage read_welcome(ByteReader& from) {
     const std::int32_t high = n < 2 ? farthest_window : largest_window;
     require(screen.window[n] >= low && screen.window[n] <= high, "no window");
   }
-  return message;
 }
 
-FrameMessage read_frame(ByteReader& from) {
-  FrameMessage message;
-  message.session = from.get<std::uint64_t>();
-  message.frame = from.get<std::uint64_t>();
-  message.head = read_head(from);
-  message.eye_separation = from.get<double>();
-  message.place = from.get<RoomPlace>();
-  message.look.volumes = from.get<std::uint8_t>();
-  message.look.shows_contacts = from.get_bool();
-  message.look.level = from.get<double>();
-  message.look.width = from.get<double>();
-  const bool is_cut = from.get_bool();
-  const auto cut = from.get<Cut>();
-  if (is_cut) message.look.cut = cut;
-  message.state = from.get_list<std::byte>();
+/// Samples and colors are shares, and samples do not fall.
+void check_curve(const std::vector<ColorPoint>& curve) {
+  require(curve.empty() || (curve.size() >= 2 && curve.size() <= most_curve_points), "no curve");
+  double before = 0;
+  for (const auto& [sample, color, opacity] : curve) {
+    for (const double share : {sample, color[0], color[1], color[2], opacity}) {
+      require(share >= 0 && share <= 1, "no point of a curve");
+    }
+    require(sample >= before, "points of a curve without order");
+    before = sample;
+  }
+}
+
+void check_message(const FrameMessage& message) {
+  check_head(message.head);
   const RoomPlace& place = message.place;
   require(is_in_world(place.observer) && is_in_world(place.origin) &&
               std::ranges::all_of(place.axes, is_in_world),
           "no place of the room");
-  require(message.eye_separation >= 0 && message.eye_separation <= 1 && message.look.volumes <= 2 &&
-              std::abs(message.look.level) < 1e6 && message.look.width > 1e-6 &&
-              message.look.width < 1e6 && is_in_world(cut.point) &&
-              std::abs(norm(cut.normal) - 1) < 1e-6,
+  const ScreenLook& look = message.look;
+  require(message.eye_separation >= 0 && message.eye_separation <= 1 && look.volumes <= 2 &&
+              std::abs(look.level) < 1e6 && look.width > 1e-6 && look.width < 1e6,
           "no look");
-  return message;
+  check_curve(look.curve);
+  require(
+      !look.cut || (is_in_world(look.cut->point) && std::abs(norm(look.cut->normal) - 1) < 1e-6),
+      "no cut");
 }
 
 template <class Message>
 Bytes written(const Message& message) {
   ByteWriter to;
-  to.add(letters);
-  to.add(static_cast<std::uint8_t>(message.index()));
-  std::visit([&](const auto& kind) { write(to, kind); }, message);
+  to(own_letters, message);
   return to.take();
 }
 
-std::uint8_t read_kind(ByteReader& from) {
-  using Letters = std::array<char, 4>;
-  require(from.get<Letters>() == letters, "not of this program");
-  return from.get<std::uint8_t>();
+template <class Message>
+Message read(std::span<const std::byte> bytes) {
+  ByteReader from(bytes);
+  std::array<char, 4> letters{};
+  from(letters);
+  require(letters == own_letters, "not of this program");
+  Message message;
+  from(message);
+  from.end();
+  std::visit([](const auto& kind) { check_message(kind); }, message);
+  return message;
 }
 }  // namespace
 
@@ -146,62 +140,11 @@ Bytes bytes_of(const ToScreen& message) {
 }
 
 ToMaster to_master(std::span<const std::byte> bytes) {
-  ByteReader from(bytes);
-  ToMaster message;
-  switch (read_kind(from)) {
-    case 0: {
-      JoinMessage join;
-      join.screen = from.get_text();
-      join.session = from.get<std::uint64_t>();
-      message = std::move(join);
-      break;
-    }
-    case 1:
-      message = ReadyMessage{from.get<std::uint64_t>()};
-      break;
-    case 2:
-      message = AliveMessage{};
-      break;
-    case 3:
-      message = LeaveMessage{};
-      break;
-    case 4:
-      message = HeadMessage{read_head(from)};
-      break;
-    default:
-      throw std::invalid_argument("no kind of message");
-  }
-  from.end();
-  return message;
+  return read<ToMaster>(bytes);
 }
 
 ToScreen to_screen(std::span<const std::byte> bytes) {
-  ByteReader from(bytes);
-  ToScreen message;
-  switch (read_kind(from)) {
-    case 0:
-      message = read_welcome(from);
-      break;
-    case 1:
-      message = RefuseMessage{from.get_text()};
-      break;
-    case 2:
-      message = read_frame(from);
-      break;
-    case 3:
-      message = SwapMessage{from.get<std::uint64_t>()};
-      break;
-    case 4:
-      message = EndMessage{};
-      break;
-    case 5:
-      message = WhoMessage{};
-      break;
-    default:
-      throw std::invalid_argument("no kind of message");
-  }
-  from.end();
-  return message;
+  return read<ToScreen>(bytes);
 }
 
 }  // namespace tetwarp::view

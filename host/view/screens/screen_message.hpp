@@ -6,10 +6,12 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "host/view/pick.hpp"
 #include "host/view/screens/message_bytes.hpp"
 #include "host/view/screens/room.hpp"
+#include "host/view/volume_colors.hpp"
 
 namespace tetwarp::view {
 
@@ -46,6 +48,7 @@ struct ScreenLook {
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeColors::set_window()
   std::optional<Cut> cut = {};
+  std::vector<ColorPoint> curve = {};  ///< as VolumeColors::set_curve(); empty: there is no volume
 
   bool operator==(const ScreenLook&) const = default;
 };

@@ -4,10 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <type_traits>
 
 #include "host/base/point3.hpp"
 
 namespace tetwarp::view {
+
+/// Writes with a ByteWriter and reads with a ByteReader.
+template <class Stream, class Value>
+requires std::same_as<std::remove_const_t<Value>, SharedState>
+void exchange_members(Stream& stream, Value& state) {
+  auto& [step, time, is_paused, moving, contacts, grab] = state;
+  stream(step, time, is_paused, moving, contacts, grab);
+}
+
 namespace {
 Point3 wide(const Float3& x) {
   return {x[0], x[1], x[2]};
@@ -42,41 +53,24 @@ std::vector<Point3> surface_of_body(const SharedBody& body, const std::vector<Fl
 }  // namespace
 
 Bytes bytes_of(const SharedState& state) {
-  ByteWriter to;
-  to.add(state.step);
-  to.add(state.time);
-  to.add(static_cast<std::uint8_t>(state.is_paused));
-  to.add(static_cast<std::uint64_t>(state.moving.size()));
-  for (const auto& points : state.moving) to.add_list(points);
-  to.add_list(state.contacts);
-  to.add(static_cast<std::uint8_t>(state.grab.has_value()));
-  if (state.grab) to.add(*state.grab);
-  return to.take();
+  return bytes_of_values(state);
 }
 
 SharedState state_of(std::span<const std::byte> bytes, const SharedScene& scene) {
-  ByteReader from(bytes);
-  SharedState state;
-  state.step = from.get<std::int64_t>();
-  state.time = from.get<double>();
-  state.is_paused = from.get_bool();
-  bool is_good = std::isfinite(state.time) && from.get_count(8) == scene.bodies.size();
-  for (std::size_t b = 0; is_good && b < scene.bodies.size(); ++b) {
-    const auto& points = state.moving.emplace_back(from.get_list<Float3>());
-    is_good = points.size() == static_cast<std::size_t>(scene.bodies[b].moving_count) &&
-              std::ranges::all_of(points, is_finite_float);
+  auto state = read_values<SharedState>(bytes);
+  require(std::isfinite(state.time) && state.moving.size() == scene.bodies.size(),
+          "no state of this scene");
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    require(state.moving[b].size() == static_cast<std::size_t>(scene.bodies[b].moving_count) &&
+                std::ranges::all_of(state.moving[b], is_finite_float),
+            "no state of this scene");
   }
-  if (!is_good) throw std::invalid_argument("no state of this scene");
-  state.contacts = from.get_list<std::array<Float3, 2>>();
-  if (from.get_bool()) state.grab = from.get<std::array<Float3, 2>>();
-  from.end();
   const auto are_finite = [](const std::array<Float3, 2>& pair) {
     return is_finite_float(pair[0]) && is_finite_float(pair[1]);
   };
-  if (!std::ranges::all_of(state.contacts, are_finite) ||
-      (state.grab && !are_finite(*state.grab))) {
-    throw std::invalid_argument("a number that is not finite");
-  }
+  require(
+      std::ranges::all_of(state.contacts, are_finite) && (!state.grab || are_finite(*state.grab)),
+      "a number that is not finite");
   return state;
 }
 

@@ -20,6 +20,7 @@
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_options.hpp"
 #include "host/view/view_scene.hpp"
+#include "host/view/view_tools.hpp"
 #include "host/view/window/screens.hpp"
 #include "host/view/window/view_window.hpp"
 #include "io/files/finished_file.hpp"
@@ -41,18 +42,12 @@ void check_display() {
                            "; start it from a desktop, through ssh -X, or within xvfb-run");
 }
 
-/// The scene, with the ball to push with.
+/// The scene, with tools.
 Scene load(const ViewOptions& options) {
   Scene scene = options.scene_file.empty()
                     ? parse_scene(scene_text(options.scene_name), options.scene_name)
                     : read_scene(options.scene_file);
-  if (options.ball) {
-    const auto& [x, y, z, radius] = *options.ball;
-    Body ball{.name = "ball", .kind = BodyKind::scripted};
-    ball.geometry = Shape{EllipsoidShape{{radius, radius, radius}}};
-    ball.pose.position = {x, y, z};
-    scene.bodies.push_back(std::move(ball));
-  }
+  add_tools(options, scene);
   return scene;
 }
 
@@ -121,7 +116,11 @@ void show_scene(const ViewOptions& options) {
   if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   simulation->end();
   write_results(*simulation, options);
-  if (options.timing) print_timing(*simulation, window.picture_count(), start);
+  if (options.timing) {
+    print_timing(*simulation, window.picture_count(), start);
+    if (!window.delay().text().empty()) std::puts(window.delay().text().c_str());
+    if (screens) std::puts(screens->status().c_str());
+  }
   if (!problem.empty()) throw std::runtime_error(options.scene() + ": " + problem);
 }
 

@@ -13,29 +13,38 @@ void MouseStyle::OnLeftButtonDown() {
   vtkRenderWindowInteractor* const events = GetInteractor();
   const int* const place = events->GetEventPosition();
   const bool may_grab = events->GetShiftKey() == 0 && events->GetControlKey() == 0;
-  grabs_ = may_grab && actions_.grab(place[0], place[1]);
-  if (!grabs_) Superclass::OnLeftButtonDown();
+  edits_ = actions_.take_point(place[0], place[1], false);
+  grabs_ = !edits_ && may_grab && actions_.grab(place[0], place[1]);
+  if (!edits_ && !grabs_) Superclass::OnLeftButtonDown();
 }
 
 void MouseStyle::OnLeftButtonUp() {
-  if (!grabs_) return Superclass::OnLeftButtonUp();
-  grabs_ = false;
-  actions_.release();
+  if (edits_) {
+    edits_ = false;
+  } else if (grabs_) {
+    grabs_ = false;
+    actions_.release();
+  } else {
+    Superclass::OnLeftButtonUp();
+  }
 }
 
 void MouseStyle::OnRightButtonDown() {
-  turns_ = actions_.turn_window(0, 0);
-  if (!turns_) Superclass::OnRightButtonDown();
+  const int* const place = GetInteractor()->GetEventPosition();
+  edits_ = actions_.take_point(place[0], place[1], true);
+  turns_ = !edits_ && actions_.turn_window(0, 0);
+  if (!edits_ && !turns_) Superclass::OnRightButtonDown();
 }
 
 void MouseStyle::OnRightButtonUp() {
-  if (!turns_) return Superclass::OnRightButtonUp();
-  turns_ = false;
+  if (!edits_ && !turns_) return Superclass::OnRightButtonUp();
+  edits_ = turns_ = false;
 }
 
 void MouseStyle::OnMouseMove() {
   const int* const place = GetInteractor()->GetEventPosition();
   const int* const before = GetInteractor()->GetLastEventPosition();
+  if (edits_) return actions_.move_point(place[0], place[1]);
   if (grabs_) return actions_.pull(place[0], place[1]);
   if (turns_) {
     actions_.turn_window(place[0] - before[0], place[1] - before[1]);

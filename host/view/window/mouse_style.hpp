@@ -15,12 +15,15 @@ struct MouseActions {
   std::function<void()> release;
   /// Moves the window of volumes by pixels; false: there are none to see.
   std::function<bool(int x, int y)> turn_window;
+  /// Takes a point of the curve of volumes; `tints`: to change its color. False: no curve is there.
+  std::function<bool(int x, int y, bool tints)> take_point;
+  std::function<void(int x, int y)> move_point;
   std::function<void(const std::string& key)> press;  ///< name of X11
 };
 
-/// Left drags what is under the pointer, or turns the camera; right drags the window of volumes, or
-/// zooms. Everything else is that of VTK's trackball: Shift and left or middle pan, Ctrl and left
-/// spins, the wheel zooms. Keys of VTK do nothing.
+/// Left drags what is under the pointer, a point of a curve too, or turns the camera; right drags
+/// the window of volumes, or zooms. Everything else is that of VTK's trackball: Shift and left or
+/// middle pan, Ctrl and left spins, the wheel zooms. Keys of VTK do nothing.
 class MouseStyle : public vtkInteractorStyleTrackballCamera {
  public:
   static MouseStyle* New();
@@ -38,7 +41,7 @@ class MouseStyle : public vtkInteractorStyleTrackballCamera {
 
  private:
   MouseActions actions_;
-  bool grabs_ = false, turns_ = false;
+  bool grabs_ = false, turns_ = false, edits_ = false;
 };
 
 }  // namespace tetwarp::view

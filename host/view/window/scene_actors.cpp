@@ -118,8 +118,23 @@ void SceneActors::add_arrows(ArrowActors& of, const Rgb& color, vtkRenderer* ren
   }
 }
 
+/// Points without a value have the color of their body.
+void SceneActors::color_bodies(const LiveFrame& frame) {
+  range_.include(frame.quantity, frame.values);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    std::vector<Rgb> colors;
+    if (b < frame.values.size()) {
+      for (const float value : frame.values[b]) {
+        colors.push_back(std::isnan(value) ? color_of(b) : value_color(range_.share(value)));
+      }
+    }
+    bodies_[b].set_colors(colors);
+  }
+}
+
 void SceneActors::show(const LiveFrame& frame) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].move(frame.points[b]);
+  color_bodies(frame);
   for (auto& [number, actor] : obstacles_) {
     const Obstacle& obstacle = scene_.obstacles[number];
     if (!obstacle.path.empty()) actor.move(surface_of(obstacle, frame.time)->points);

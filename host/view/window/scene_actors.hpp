@@ -14,6 +14,7 @@
 #include <vtkRenderer.h>
 
 #include "host/view/live_frame.hpp"
+#include "host/view/value_colors.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/window/surface_actor.hpp"
 
@@ -36,11 +37,14 @@ class SceneActors {
 
   void show(const LiveFrame& frame);
   void show_contacts(bool are_shown);
+  /// Of the values that were shown so far.
+  const ValueRange& range() const { return range_; }
   /// Whether the surface of a body is drawn.
   void show_body(std::size_t body, bool is_shown);
 
  private:
   void add_plane(const DrawnPlane& plane, vtkRenderer* renderer);
+  void color_bodies(const LiveFrame& frame);
   void add_arrows(ArrowActors& of, const Rgb& color, vtkRenderer* renderer);
 
   const ViewScene& scene_;
@@ -48,6 +52,7 @@ class SceneActors {
   std::deque<std::pair<std::size_t, SurfaceActor>> obstacles_;  ///< number in the scene, mesh
   ArrowActors contacts_, held_;
   double largest_force_ = 0;  ///< of a contact so far [N]
+  ValueRange range_;
 };
 
 }  // namespace tetwarp::view

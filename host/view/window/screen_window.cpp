@@ -244,6 +244,7 @@ void ScreenWindow::show_state(const FrameMessage& message) {
     actors_->show_body(volume.body, look == VolumeLook::surfaces);
   }
   volumes_->set_look(look);
+  if (!message.look.curve.empty()) volumes_->set_curve(message.look.curve);
   volumes_->set_window(message.look.level, message.look.width);
   cut_.set(message.look.cut, renderer_);
 }

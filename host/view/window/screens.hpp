@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_scene.hpp"
@@ -20,6 +21,7 @@ struct MasterView {
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeActors::set_window()
   std::optional<Cut> cut;
+  std::vector<ColorPoint> curve;  ///< of volumes, as VolumeActors::curve(); empty: there is none
 };
 
 /// The master's end: serves all screens, and starts those of this machine.

@@ -59,11 +59,15 @@ SurfaceActor::SurfaceActor(const std::vector<Point3>& points,
   places_->SetNumberOfPoints(drawn->GetNumberOfPoints());
   normals_->SetNumberOfComponents(3);
   normals_->SetNumberOfTuples(drawn->GetNumberOfPoints());
+  colors_->SetNumberOfComponents(3);
+  colors_->SetNumberOfTuples(drawn->GetNumberOfPoints());
+  mesh_->GetPointData()->SetScalars(colors_);
   mesh_->SetPoints(places_);
   mesh_->SetPolys(drawn->GetPolys());
   mesh_->GetPointData()->SetNormals(normals_);
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(mesh_);
+  mapper->ScalarVisibilityOff();
   actor_->SetMapper(mapper);
   vtkProperty* const look = actor_->GetProperty();
   look->SetColor(color[0], color[1], color[2]);
@@ -82,6 +86,17 @@ void SurfaceActor::move(const std::vector<Point3>& points) {
   compute_normals();
   places_->Modified();
   normals_->Modified();
+  mesh_->Modified();
+}
+
+void SurfaceActor::set_colors(const std::vector<Rgb>& colors) {
+  actor_->GetMapper()->SetScalarVisibility(!colors.empty());
+  if (colors.empty()) return;
+  for (std::size_t p = 0; p < point_of_.size(); ++p) {
+    const auto& [red, green, blue] = colors[static_cast<std::size_t>(point_of_[p])];
+    colors_->SetTuple3(static_cast<vtkIdType>(p), 255 * red, 255 * green, 255 * blue);
+  }
+  colors_->Modified();
   mesh_->Modified();
 }
 

@@ -9,6 +9,7 @@
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
 
 #include "host/view/pick.hpp"
 #include "host/view/scene_look.hpp"
@@ -22,6 +23,8 @@ class SurfaceActor {
 
   /// @param points  as many as at the start [world]
   void move(const std::vector<Point3>& points);
+  /// @param colors  of the points at the start; empty: the surface has its own color
+  void set_colors(const std::vector<Rgb>& colors);
   vtkActor* actor() { return actor_; }
 
  private:
@@ -32,6 +35,7 @@ class SurfaceActor {
   Triangles triangles_;  ///< of drawn points
   vtkNew<vtkPoints> places_;
   vtkNew<vtkFloatArray> normals_;
+  vtkNew<vtkUnsignedCharArray> colors_;
   vtkNew<vtkPolyData> mesh_;
   vtkNew<vtkActor> actor_;
 };

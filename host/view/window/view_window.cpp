@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
-#include <vtkTextProperty.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +16,7 @@
 #include <thread>
 
 #include "host/base/point3.hpp"
+#include "host/view/window/overlay_text.hpp"
 #include "host/view/window/window_picture.hpp"
 
 namespace tetwarp::view {
@@ -29,15 +29,14 @@ constexpr double resting_seconds = 0.4;  // until rays become finer
 constexpr double cut_step = 0.02;        // of the size of the scene
 constexpr double window_pixels = 400;    // by which the mouse moves the window by its width
 
-constexpr const char* help_text =
-    "left: pull the body, else turn   Shift+left: pan\nwheel: zoom   right: window of volumes\n"
-    "space pause   s step   r restart   c contacts   p picture\n"
-    "v volume, slices, surfaces   i probe   x cut plane   , . move it\nh help   q quit";
-
-void style_text(vtkTextActor* text, int size) {
-  text->GetTextProperty()->SetFontSize(size);
-  text->GetTextProperty()->SetFontFamilyToCourier();
-  text->GetTextProperty()->SetColor(0.1, 0.1, 0.15);
+/// The next number that no file in the working folder has.
+std::string free_name(const std::string& ending) {
+  std::string path;
+  int number = 0;
+  do {
+    path = fmt::format("view_{:04}{}", number++, ending);
+  } while (std::filesystem::exists(path));
+  return path;
 }
 }  // namespace
 
@@ -48,6 +47,7 @@ ViewWindow::ViewWindow(const ViewScene& scene,
     : scene_(scene), simulation_(simulation), options_(options), screens_(screens) {
   set_up_window();
   set_up_mouse();
+  if (!options_.devices.empty()) set_up_devices();
 }
 
 void ViewWindow::set_up_window() {
@@ -64,16 +64,6 @@ void ViewWindow::set_up_window() {
   window_->SetWindowName("tetwarp");
   window_->AddRenderer(renderer_);
   events_->SetRenderWindow(window_);
-  style_text(text_, 15);
-  style_text(help_, 13);
-  text_->GetTextProperty()->SetVerticalJustificationToTop();
-  text_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  text_->GetPositionCoordinate()->SetValue(0.01, 0.99);
-  help_->SetInput(help_text);
-  help_->SetPosition(10, 8);
-  help_->VisibilityOff();
-  renderer_->AddViewProp(text_);
-  renderer_->AddViewProp(help_);
 }
 
 void ViewWindow::set_up_mouse() {
@@ -82,9 +72,32 @@ void ViewWindow::set_up_mouse() {
   actions.pull = [this](int x, int y) { pull(x, y); };
   actions.release = [this] { simulation_.give({.kind = OrderKind::release}); };
   actions.turn_window = [this](int x, int y) { return turn_window(x, y); };
+  actions.take_point = [this](int x, int y, bool tints) {
+    return curve_ && curve_->press(x, y, tints);
+  };
+  actions.move_point = [this](int x, int y) {
+    if (!curve_->move(x, y)) return;
+    volumes_->set_curve(curve_->editor()->curve());
+    draw();
+  };
   actions.press = [this](const std::string& key) { press(key); };
   style_->set_actions(std::move(actions));
   events_->SetInteractorStyle(style_);
+}
+
+void ViewWindow::set_up_devices() {
+  HandActions actions;
+  actions.grab = [this](Point3& point) {
+    const int* const size = window_->GetSize();
+    if (!grab(size[0] / 2, size[1] / 2)) return false;
+    point = world_of(size[0] / 2.0, size[1] / 2.0, grab_depth_);
+    return true;
+  };
+  actions.pull = [this](const Point3& target) {
+    simulation_.give({.kind = OrderKind::pull, .point = target});
+  };
+  actions.release = [this] { simulation_.give({.kind = OrderKind::release}); };
+  devices_.emplace(options_.devices, std::move(actions));
 }
 
 void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
@@ -94,6 +107,11 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   if (frame.points.empty() && frame.has_failed) return;
   actors_.emplace(scene_, frame, renderer_);
   volumes_.emplace(scene_, options_.preset, renderer_);
+  legend_.emplace(renderer_);
+  if (!scene_.volumes.empty()) {
+    curve_.emplace(renderer_);
+    curve_->set_curve(volumes_->curve());
+  }
   window_->Render();
   rays_ = RayQuality(is_software(window_));
   volumes_->set_rays(rays_.moving());
@@ -112,7 +130,9 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   draw();
   tell_screens();
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
+  if (!options_.film.empty()) film_.begin(options_.film);
   events_->Start();
+  film_.end();
 }
 
 /// The screens follow the camera and what is shown.
@@ -128,10 +148,12 @@ void ViewWindow::tell_screens() {
   view.level = level_;
   view.width = width_;
   view.cut = cut_;
+  if (curve_) view.curve = curve_->editor()->curve();
   screens_->set_view(view);
 }
 
 void ViewWindow::on_timer() {
+  const bool has_moved = devices_ && devices_->update(renderer_->GetActiveCamera());
   tell_screens();
   if (simulation_.frames().take()) {
     LiveFrame& frame = simulation_.frames().front();
@@ -140,11 +162,14 @@ void ViewWindow::on_timer() {
       volumes_->show(frame);
     }
     draw();
+  } else if (has_moved) {
+    draw();
   }
   if (resting_.seconds() > resting_seconds) refine();
   const LiveFrame& frame = simulation_.frames().front();
   const bool is_limited = options_.steps.has_value() || !options_.replay.empty();
-  const bool is_over = frame.is_last || (frame.has_failed && is_limited);
+  const bool is_over = (frame.is_last && !(devices_ && devices_->is_simulating())) ||
+                       (frame.has_failed && is_limited);
   if (is_over || *is_interrupted_ != 0) events_->TerminateApp();
 }
 
@@ -175,6 +200,7 @@ void ViewWindow::note_picture(double seconds) {
   std::erase_if(drawn_, [](const Stopwatch& since) { return since.seconds() > 1; });
   drawn_.emplace_back();
   ++picture_count_;
+  attempt([this] { film_.note(window_); });
   if (is_refined_) return;
   resting_ = Stopwatch();
   if (look_ != VolumeLook::rays || scene_.volumes.empty()) return;
@@ -197,9 +223,12 @@ void ViewWindow::refine() {
 void ViewWindow::draw() {
   is_refined_ = false;
   volumes_->set_rays(rays_.moving());
-  text_->SetInput(overlay().c_str());
+  texts_.set(overlay());
+  legend_->show(simulation_.frames().front().quantity, actors_->range());
+  if (curve_) curve_->update();
   renderer_->ResetCameraClippingRange();
   window_->Render();
+  delay_.drawn(simulation_.frames().front().input);
 }
 
 /// Shows slices where rays take too long.
@@ -215,21 +244,37 @@ void ViewWindow::note(const std::string& text) {
 }
 
 std::string ViewWindow::overlay() {
-  const LiveFrame& frame = simulation_.frames().front();
-  std::string text = fmt::format("step {}   {:.3f} s{}\n{:.0f} steps/s   {} frames/s   {} contacts",
-                                 frame.step, frame.time, frame.is_paused ? "   paused" : "",
-                                 frame.steps_per_second, drawn_.size(), frame.contacts.size());
-  if (std::isfinite(scene_.max_step_seconds)) {
-    text += fmt::format("\nbudget {:.3g} ms, over in {} of {} steps",
-                        1000 * scene_.max_step_seconds, frame.late_steps, frame.tick);
-  } else if (!frame.is_converged) {
-    text += "\nabove its tolerance";
-  }
-  if (frame.grab) text += fmt::format("\nforce {:.3g} N", norm(frame.grab->force));
+  std::string text = overlay_text(scene_, simulation_.frames().front(), drawn_.size());
   if (screens_ != nullptr) text += "\n" + screens_->status();
-  if (!frame.message.empty()) text += "\n" + frame.message;
+  if (film_.is_running()) text += "\nfilm " + film_.path();
   if (!note_.empty()) text += "\n" + note_;
   return text;
+}
+
+/// Of the next quantity.
+void ViewWindow::color_surfaces() {
+  constexpr int quantities = static_cast<int>(SurfaceQuantity::adhesion) + 1;
+  const int now = static_cast<int>(simulation_.frames().front().quantity);
+  const auto next = static_cast<SurfaceQuantity>((now + 1) % quantities);
+  simulation_.give({.kind = OrderKind::values, .quantity = next});
+}
+
+void ViewWindow::turn_film() {
+  const std::string path = film_.path();
+  attempt([&] {
+    if (path.empty()) return film_.begin(free_name(".gif"));
+    film_.end();
+    note("wrote " + path);
+  });
+}
+
+/// The window goes on where it fails.
+void ViewWindow::attempt(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    note(error.what());
+  }
 }
 
 void ViewWindow::set_look(VolumeLook look) {
@@ -258,18 +303,15 @@ void ViewWindow::press(const std::string& key) {
              : look_ == VolumeLook::slices ? VolumeLook::surfaces
                                            : VolumeLook::rays);
   }
-  if (key == "h") help_->SetVisibility(help_->GetVisibility() == 0);
+  if (key == "h") texts_.turn_help();
+  if (key == "k") color_surfaces();
+  if (key == "m") turn_film();
+  if (key == "o" && curve_) curve_->turn();
   if (key == "p") {
-    std::string path;
-    do {
-      path = fmt::format("view_{:04}.png", pictures_++);
-    } while (std::filesystem::exists(path));
-    try {
+    attempt([this, path = free_name(".png")] {
       save_picture(path);
       note("wrote " + path);
-    } catch (const std::exception& error) {
-      note(error.what());
-    }
+    });
   }
   if (key == "q" || key == "Escape") return events_->TerminateApp();
   draw();
@@ -289,23 +331,13 @@ std::optional<Pick> ViewWindow::pick_at(int x, int y, Point3& ray) {
   return pick(simulation_.frames().front().points, scene_.triangles, near, ray, cut_);
 }
 
-/// Notes what is under the pointer: body, place, and a value a voxel below the surface.
+/// Notes what is under the pointer.
 void ViewWindow::probe() {
   const int* const place = events_->GetEventPosition();
   Point3 ray{};
   const auto found = pick_at(place[0], place[1], ray);
   if (!found) return note("nothing is there");
-  const Point3& x = found->point;
-  std::string text =
-      fmt::format("{} at {:.4g}, {:.4g}, {:.4g} m", scene_.bodies[found->body], x[0], x[1], x[2]);
-  const std::vector<VolumeFrame>& volumes = simulation_.frames().front().volumes;
-  for (std::size_t v = 0; v < volumes.size(); ++v) {
-    if (scene_.volumes[v].body != found->body) continue;
-    const Point3 below = plus(x, times(volumes[v].grid.spacing[0], unit(ray)));
-    const auto value = value_at(volumes[v], scene_.volumes[v], below);
-    if (value) text += fmt::format(": {:.4g}", *value);
-  }
-  note(text);
+  note(probe_text(scene_, simulation_.frames().front(), *found, ray));
 }
 
 /// Hides what is before the middle of the scene, or shows all again.

@@ -3,6 +3,7 @@
 #pragma once
 #include <csignal>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,16 +12,20 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
-#include <vtkTextActor.h>
 
 #include "host/base/stopwatch.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_scene.hpp"
+#include "host/view/window/curve_panel.hpp"
 #include "host/view/window/cut_plane.hpp"
+#include "host/view/window/device_hand.hpp"
 #include "host/view/window/mouse_style.hpp"
 #include "host/view/window/scene_actors.hpp"
 #include "host/view/window/screens.hpp"
+#include "host/view/window/value_legend.hpp"
 #include "host/view/window/volume_actors.hpp"
+#include "host/view/window/window_film.hpp"
+#include "host/view/window/window_texts.hpp"
 
 namespace tetwarp::view {
 
@@ -42,12 +47,14 @@ class ViewWindow {
   /// Writes what is shown. @pre has_picture() @throws IoError
   void save_picture(const std::string& path);
   std::int64_t picture_count() const { return picture_count_; }
+  const InputDelay& delay() const { return delay_; }
   /// What ended the simulation, or empty.
   std::string failure();
 
  private:
   void set_up_window();
   void set_up_mouse();
+  void set_up_devices();
   void on_timer();
   void draw();
   void set_up_drawing();
@@ -66,6 +73,9 @@ class ViewWindow {
   void fall_back(double seconds);
   void note(const std::string& text);
   std::string overlay();
+  void color_surfaces();
+  void turn_film();
+  void attempt(const std::function<void()>& action);
   Point3 world_of(double x, double y, double depth);
 
   const ViewScene& scene_;
@@ -76,7 +86,7 @@ class ViewWindow {
   vtkNew<vtkRenderWindow> window_;
   vtkNew<vtkRenderWindowInteractor> events_;
   vtkNew<MouseStyle> style_;
-  vtkNew<vtkTextActor> text_, help_;
+  WindowTexts texts_{renderer_};
   std::optional<SceneActors> actors_;
   std::optional<VolumeActors> volumes_;
   VolumeLook look_ = VolumeLook::rays;
@@ -86,11 +96,15 @@ class ViewWindow {
   Stopwatch drawing_;  ///< since a picture was begun
   Stopwatch resting_;  ///< since the last picture of something that moved
   std::int64_t picture_count_ = 0;
+  InputDelay delay_;
   double level_ = 0, width_ = 1;  ///< of the window of volumes
   double grab_depth_ = 0;         ///< of the point that is held, as on the display
   int slow_frames_ = 0;           ///< drawn one after the other
-  int pictures_ = 0;
   std::string note_;
+  std::optional<ValueLegend> legend_;
+  std::optional<CurvePanel> curve_;
+  WindowFilm film_;
+  std::optional<DeviceHand> devices_;
   CutPlane cut_plane_;
   std::optional<Cut> cut_;
   const volatile std::sig_atomic_t* is_interrupted_ = nullptr;

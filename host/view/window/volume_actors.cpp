@@ -119,6 +119,13 @@ void VolumeActors::show_look(Drawn& drawn) {
   }
 }
 
+void VolumeActors::set_curve(const std::vector<ColorPoint>& curve) {
+  for (Drawn& drawn : drawn_) {
+    drawn.colors.set_curve(curve);
+    color(drawn);
+  }
+}
+
 void VolumeActors::set_window(double level, double width) {
   for (Drawn& drawn : drawn_) {
     drawn.colors.set_window(level, width);

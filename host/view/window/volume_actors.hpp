@@ -3,6 +3,7 @@
 #pragma once
 #include <deque>
 #include <string>
+#include <vector>
 
 #include <vtkColorTransferFunction.h>
 #include <vtkGPUVolumeRayCastMapper.h>
@@ -33,6 +34,10 @@ class VolumeActors {
   void show(LiveFrame& frame);
   void set_look(VolumeLook look);
   void set_rays(const RaySpacing& spacing);
+  /// Of the first volume. @pre there is one
+  std::vector<ColorPoint> curve() const { return drawn_.front().colors.curve(); }
+  /// Of all volumes, as VolumeColors::set_curve().
+  void set_curve(const std::vector<ColorPoint>& curve);
   /// As VolumeColors::set_window().
   void set_window(double level, double width);
 

@@ -17,16 +17,12 @@ bool is_software(vtkRenderWindow* window) {
          renderer.find("softpipe") != std::string_view::npos;
 }
 
-Image picture_of(vtkRenderWindow* window) {
-  const bool swaps = window->GetSwapBuffers() != 0;
-  window->SwapBuffersOff();
-  window->Render();
+Image drawn_picture_of(vtkRenderWindow* window) {
   vtkNew<vtkWindowToImageFilter> reader;
   reader->SetInput(window);
   reader->ReadFrontBufferOff();
   reader->ShouldRerenderOff();
   reader->Update();
-  window->SetSwapBuffers(swaps);
   vtkImageData* const picture = reader->GetOutput();
   int size[3];
   picture->GetDimensions(size);
@@ -37,6 +33,15 @@ Image picture_of(vtkRenderWindow* window) {
     std::memcpy(image.rgb.data() + row_bytes * static_cast<std::size_t>(size[1] - 1 - row),
                 picture->GetScalarPointer(0, row, 0), row_bytes);
   }
+  return image;
+}
+
+Image picture_of(vtkRenderWindow* window) {
+  const bool swaps = window->GetSwapBuffers() != 0;
+  window->SwapBuffersOff();
+  window->Render();
+  Image image = drawn_picture_of(window);
+  window->SetSwapBuffers(swaps);
   return image;
 }
 

@@ -11,6 +11,9 @@ namespace tetwarp::view {
 /// Whether a window that has drawn something is drawn without a graphics processor.
 bool is_software(vtkRenderWindow* window);
 
+/// What a window has drawn last.
+Image drawn_picture_of(vtkRenderWindow* window);
+
 /// Draws the window again and reads it.
 Image picture_of(vtkRenderWindow* window);
 

@@ -56,6 +56,12 @@ void CellOverlap::run(std::int64_t cell) {
     for (int voxel = 0; voxel < voxel_count; ++voxel) integrate_alone(voxel);
     return;
   }
+  collect(cell);
+  store();
+}
+
+void CellOverlap::collect(std::int64_t cell) {
+  op_.frame.set_corner(cell, corner_);
   memory_.parts.clear();
   memory_.facets.clear();
   constexpr int none = std::numeric_limits<int>::max();
@@ -65,7 +71,7 @@ void CellOverlap::run(std::int64_t cell) {
     const int t = tet_of(op_.list.pairs[p]);
     if (mesh_.sides[t] != 0) add_tet(t);
   }
-  store();
+  memory_.facets.push_back({-1, -1, memory_.parts.size()});
 }
 
 /// Whether the tetrahedra of a cell take many voxels of the source into one of the output.
@@ -144,6 +150,7 @@ void CellOverlap::set_tet(int t, Tet& tet) const {
 /// cuts: their integral is that of one sample over the whole part.
 /// @param voxel  out, one of them
 bool CellOverlap::is_flat(int t, int* voxel) const {
+  if (op_.source.data == nullptr) return false;
   double start[3], linear[3][3];
   map_start(op_.setups[t], corner_, start, linear);
   const TetNodes rest = tet_nodes(mesh_.rest, op_.tets.data + 4 * t);
@@ -311,7 +318,6 @@ void CellOverlap::add_facet(const Tet& tet, const Polygon<6>& square, int inner,
 }
 
 void CellOverlap::store() {
-  memory_.facets.push_back({-1, -1, memory_.parts.size()});
   constexpr std::int64_t most = std::int64_t{1} << 18;  // sums at a time
   for (int begin = 0; begin < voxel_count;) {
     if (memory_.reach[begin].sum_count() > most) {
@@ -340,25 +346,18 @@ void CellOverlap::add_parts(int begin, int end) {
   for (std::size_t f = 0; f + 1 < memory_.facets.size(); ++f) {
     const FacetPart* const first = memory_.parts.data() + memory_.facets[f].first_part;
     const FacetPart* const past = memory_.parts.data() + memory_.facets[f + 1].first_part;
-    const int inner = memory_.facets[f].inner, outer = memory_.facets[f].outer;
-    if (inner >= begin && inner < end) {
-      const Reach& reach = memory_.reach[inner];
-      double* const sums = memory_.sums.data() + memory_.start[inner];
+    const auto add_to = [&](int voxel, double side) {
+      if (voxel < begin || voxel >= end) return;
+      const Reach& reach = memory_.reach[voxel];
+      double* const sums = memory_.sums.data() + memory_.start[voxel];
       for (const FacetPart* part = first; part < past; ++part) {
         double* const at = sums + reach.place_of(part->voxel);
-        at[0] += part->area;
-        at[1] += part->moment;
+        at[0] += side * part->area;
+        at[1] += side * part->moment;
       }
-    }
-    if (outer >= begin && outer < end) {
-      const Reach& reach = memory_.reach[outer];
-      double* const sums = memory_.sums.data() + memory_.start[outer];
-      for (const FacetPart* part = first; part < past; ++part) {
-        double* const at = sums + reach.place_of(part->voxel);
-        at[0] -= part->area;
-        at[1] -= part->moment;
-      }
-    }
+    };
+    add_to(memory_.facets[f].inner, 1.0);
+    add_to(memory_.facets[f].outer, -1.0);
   }
 }
 

@@ -74,6 +74,10 @@ class CellOverlap {
   /// Stores the values of a cell's voxels. The same bits for every region that a voxel is in.
   void run(std::int64_t cell);
 
+  /// Leaves facets, their parts and what they reach of the source in the memory, for weights that
+  /// serve all samples; the source may have none.
+  void collect(std::int64_t cell);
+
  private:
   /// A tetrahedron in the cell: nodes from the lower side of the cell's first voxel, and in the
   /// source from `origin`.

@@ -15,14 +15,7 @@ void OverlapStage<CpuExec>::run(CpuExec& exec,
                                 View<const Node> rest,
                                 double voxel_ratio,
                                 const ProgressPart& progress) {
-  if (neighbors_.empty()) set_up(op.tets, rest);
-  set_sides(op);
-  const OverlapMesh mesh = {nodes,
-                            rest,
-                            {rest_volumes_.data(), std::ssize(rest_volumes_)},
-                            {sides_.data(), std::ssize(sides_)},
-                            {neighbors_.data(), std::ssize(neighbors_)},
-                            voxel_ratio};
+  const OverlapMesh mesh = mesh_of(op, nodes, rest, voxel_ratio);
   const CpuExec::Clock clock(exec, "warp/raster");
   const std::int64_t cells = op.frame.cell_count(), tasks = 2 * std::int64_t{exec.threads()};
   memory_.resize(static_cast<std::size_t>(tasks));
@@ -36,6 +29,20 @@ void OverlapStage<CpuExec>::run(CpuExec& exec,
     });
     progress.report(static_cast<double>(op.list.ranges[end].begin) / all);
   }
+}
+
+OverlapMesh OverlapStage<CpuExec>::mesh_of(const VoxelOverlapOp& op,
+                                           View<const Node> nodes,
+                                           View<const Node> rest,
+                                           double voxel_ratio) {
+  if (neighbors_.empty()) set_up(op.tets, rest);
+  set_sides(op);
+  return {nodes,
+          rest,
+          {rest_volumes_.data(), std::ssize(rest_volumes_)},
+          {sides_.data(), std::ssize(sides_)},
+          {neighbors_.data(), std::ssize(neighbors_)},
+          voxel_ratio};
 }
 
 void OverlapStage<CpuExec>::set_up(View<const std::int32_t> tets, View<const Node> rest) {

@@ -22,6 +22,12 @@ class OverlapStage<CpuExec> {
            double voxel_ratio,
            const ProgressPart& progress);
 
+  /// What the cells of a step read beside `op`; valid until the next call.
+  OverlapMesh mesh_of(const VoxelOverlapOp& op,
+                      View<const Node> nodes,
+                      View<const Node> rest,
+                      double voxel_ratio);
+
  private:
   void set_up(View<const std::int32_t> tets, View<const Node> rest);
   void set_sides(const VoxelOverlapOp& op);

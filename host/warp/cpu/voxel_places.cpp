@@ -2,65 +2,28 @@
 /// Takes owners from a warp, and maps from the stages of the warp.
 #include "host/warp/cpu/voxel_places.hpp"
 
-#include <stdexcept>
-#include <string>
 #include <tetwarp/warp.hpp>
 
 #include "host/base/parallel.hpp"
 #include "host/warp/hex_split.hpp"
 
 namespace tetwarp {
-namespace {
-WarpPlan operator_plan(const Grid& source,
-                       const Grid& output,
-                       const Mesh& mesh,
-                       const WarpOperatorOptions& options) {
-  check_grid(source, "source");
-  check_grid(output, "output grid");
-  check_mesh(mesh);
-  if (options.filter == Filter::labels) {
-    throw std::invalid_argument(
-        "filter: labels is not linear in the samples; choose nearest, linear, cubic, bspline or "
-        "lanczos");
-  }
-  if (extends(options.outside)) {
-    throw std::invalid_argument(
-        "outside: the operator has no displacements beyond the mesh; choose background or "
-        "identity");
-  }
-  const auto voxels = static_cast<std::size_t>(output.voxel_count());
-  if (!options.mask.empty() && options.mask.size() != voxels) {
-    throw std::invalid_argument("mask: expected one number for each of " + std::to_string(voxels) +
-                                " voxels of the output, got " +
-                                std::to_string(options.mask.size()));
-  }
-  WarpPlan plan;
-  plan.sources = {VolumeView(source, PixelType::float64, 1, nullptr, Memory::host)};
-  plan.mesh = with_split_hexes(mesh);
-  plan.options.outside = options.outside;
-  plan.output_grid = output;
-  plan.region = {{0, 0, 0}, output.dims};
-  return plan;
-}
-}  // namespace
-
-VoxelPlaces::VoxelPlaces(const Grid& source,
-                         const Mesh& mesh,
+VoxelPlaces::VoxelPlaces(const WarpPlan& plan,
                          const std::vector<Point3>& deformed,
-                         const WarpOperatorOptions& options,
+                         const std::vector<std::uint8_t>& mask,
                          int threads)
-    : source_(source), output_(options.output_grid.value_or(source)) {
-  WarpPlan plan = operator_plan(source_, output_, mesh, options);
-  geometry_ = make_geometry(plan);
-  mesh_ = std::move(plan.mesh);
+    : source_(plan.sources.front().grid),
+      output_(plan.output_grid),
+      mesh_(plan.mesh),
+      geometry_(make_geometry(plan)) {
   if (!mesh_.hexes.empty()) {
     hexes_ = {{mesh_.hexes.front().data(), 8 * std::ssize(mesh_.hexes)},
               tet_count() - tets_per_hex * std::ssize(mesh_.hexes)};
   }
   find_owners(deformed, threads);
   set_up(deformed, threads);
-  for (std::size_t v = 0; v < options.mask.size(); ++v) {
-    if (options.mask[v] == 0) owners_[v] = left_out;
+  for (std::size_t v = 0; v < mask.size(); ++v) {
+    if (mask[v] == 0) owners_[v] = left_out;
   }
 }
 

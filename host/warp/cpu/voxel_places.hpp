@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-#include <tetwarp/warp_operator.hpp>
-
 #include "host/warp/cpu/operator_taps.hpp"
 #include "host/warp/geometry.hpp"
 #include "kernels/warp/hex_map.hpp"
@@ -19,11 +17,12 @@ namespace tetwarp {
 /// Owners and maps of one deformation, those of a Warper.
 class VoxelPlaces {
  public:
-  /// @throws std::invalid_argument  as WarpOperator
-  VoxelPlaces(const Grid& source,
-              const Mesh& mesh,
+  /// @param plan  of operator_plan()
+  /// @param mask  as WarpOperatorOptions::mask
+  /// @throws std::invalid_argument  on wrong positions
+  VoxelPlaces(const WarpPlan& plan,
               const std::vector<Point3>& deformed,
-              const WarpOperatorOptions& options,
+              const std::vector<std::uint8_t>& mask,
               int threads);
   VoxelPlaces(VoxelPlaces&&) = delete;  // views refer to members
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/warp_operator.hpp>
@@ -12,7 +13,9 @@
 #include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
 #include "host/exec/exec_cpu.hpp"
+#include "host/warp/cpu/operator_plan.hpp"
 #include "host/warp/cpu/operator_taps.hpp"
+#include "host/warp/cpu/overlap_weights.hpp"
 #include "host/warp/cpu/voxel_places.hpp"
 #include "kernels/warp/volume_prefilter.hpp"
 
@@ -30,6 +33,16 @@ void add_samples(const OperatorTaps& taps, const double* samples, int components
         for (int c = 0; c < components; ++c) sums[c] += weight * at[c];
       }
     }
+  }
+}
+
+void add_samples(std::span<const OverlapShare> shares,
+                 const double* samples,
+                 int components,
+                 double* sums) {
+  for (const OverlapShare& share : shares) {
+    const double* const at = samples + share.voxel * components;
+    for (int c = 0; c < components; ++c) sums[c] += share.weight * at[c];
   }
 }
 
@@ -54,6 +67,20 @@ void spread_values(const OperatorTaps& taps,
         for (int c = 0; c < components; ++c) at[c] += weight * values[c];
       }
     }
+  }
+}
+
+void spread_values(std::span<const OverlapShare> shares,
+                   const double* values,
+                   int components,
+                   std::int64_t begin,
+                   std::int64_t end,
+                   std::int64_t slice,
+                   double* samples) {
+  for (const OverlapShare& share : shares) {
+    if (share.voxel < begin * slice || share.voxel >= end * slice) continue;
+    double* const at = samples + share.voxel * components;
+    for (int c = 0; c < components; ++c) at[c] += share.weight * values[c];
   }
 }
 
@@ -139,50 +166,67 @@ struct WarpOperator::State {
   struct LayerRange {
     std::int32_t first = std::numeric_limits<std::int32_t>::max();
     std::int32_t last = -1;
+
+    void include(std::int64_t layer) {
+      first = std::min(first, static_cast<std::int32_t>(layer));
+      last = std::max(last, static_cast<std::int32_t>(layer));
+    }
+    void include(const OperatorTaps& taps, std::int64_t slice) {
+      for (int z = 0; z < taps.count[2]; ++z) include(taps.offset[2][z] / slice);
+    }
+    void include(std::span<const OverlapShare> shares, std::int64_t slice) {
+      for (const OverlapShare& share : shares) include(share.voxel / slice);
+    }
   };
 
-  State(const Grid& source,
-        const Mesh& mesh,
+  State(const WarpPlan& plan,
         const std::vector<Point3>& deformed,
         const WarpOperatorOptions& options)
       : filter(options.filter),
         threads(thread_count(options.threads)),
-        places(source, mesh, deformed, options, threads) {
-    layers.resize(static_cast<std::size_t>(places.row_count()));
-    const std::int64_t slice = slice_voxels();
-    parallel_for(threads, places.row_count(), [&](std::int64_t row) {
+        source(plan.sources.front().grid),
+        output(plan.output_grid) {
+    if (deformed.size() != plan.mesh.rest_positions.size()) {
+      throw std::invalid_argument("deformed: expected " +
+                                  std::to_string(plan.mesh.rest_positions.size()) +
+                                  " nodes as at rest, got " + std::to_string(deformed.size()));
+    }
+    if (options.intensity == Intensity::conservative) {
+      shares.emplace(plan, deformed, options.mask, threads);
+    } else {
+      places.emplace(plan, deformed, options.mask, threads);
+    }
+    layers.resize(static_cast<std::size_t>(row_count()));
+    parallel_for(threads, row_count(), [&](std::int64_t row) {
       LayerRange range;
-      for_taps(row, [&](std::int64_t, const OperatorTaps& taps) {
-        for (int z = 0; z < taps.count[2]; ++z) {
-          const auto layer = static_cast<std::int32_t>(taps.offset[2][z] / slice);
-          range.first = std::min(range.first, layer);
-          range.last = std::max(range.last, layer);
-        }
-      });
+      for_weights(
+          row, [&](std::int64_t, const auto& weights) { range.include(weights, slice_voxels()); });
       layers[static_cast<std::size_t>(row)] = range;
     });
   }
 
-  std::int64_t slice_voxels() const {
-    return places.source_grid().dims[0] * places.source_grid().dims[1];
-  }
+  std::int64_t row_count() const { return output.dims[1] * output.dims[2]; }
+  std::int64_t slice_voxels() const { return source.dims[0] * source.dims[1]; }
+  bool has_coefficients() const { return places && filter == Filter::bspline; }
 
-  /// Calls visit(voxel, taps) for the voxels of a row of the output whose row of W is not zero.
+  /// Calls visit(voxel, weights) for the voxels of a row of the output whose row of W is not zero,
+  /// with OperatorTaps or the shares of the voxel.
   template <class Visit>
-  void for_taps(std::int64_t row, const Visit& visit) const {
+  void for_weights(std::int64_t row, const Visit& visit) const {
+    if (shares) return shares->for_row(row, visit);
     OperatorTaps taps;
-    places.for_row(row, [&](std::int64_t voxel, const SourcePlace& place) {
-      if (set_taps(places.source_grid().dims, filter, place, taps)) visit(voxel, taps);
+    places->for_row(row, [&](std::int64_t voxel, const SourcePlace& place) {
+      if (set_taps(source.dims, filter, place, taps)) visit(voxel, taps);
     });
   }
 
   /// @returns the number of components @throws std::invalid_argument
   int check_sizes(std::span<const double> x, std::span<const double> y) const {
-    const int components = components_of(x, places.source_grid(), "x");
-    if (components_of(y, places.output_grid(), "y") != components) {
-      throw std::invalid_argument(
-          "y: expected " + std::to_string(components) + " components as x has, got " +
-          std::to_string(std::ssize(y) / places.output_grid().voxel_count()));
+    const int components = components_of(x, source, "x");
+    if (components_of(y, output, "y") != components) {
+      throw std::invalid_argument("y: expected " + std::to_string(components) +
+                                  " components as x has, got " +
+                                  std::to_string(std::ssize(y) / output.voxel_count()));
     }
     return components;
   }
@@ -191,41 +235,42 @@ struct WarpOperator::State {
   const double* tapped(std::span<const double> x,
                        int components,
                        std::vector<double>& memory) const {
-    if (filter != Filter::bspline) return x.data();
-    memory = prefiltered(x, places.source_grid(), components, threads);
+    if (!has_coefficients()) return x.data();
+    memory = prefiltered(x, source, components, threads);
     return memory.data();
   }
 
   Filter filter;
   int threads;
-  VoxelPlaces places;
-  std::vector<LayerRange> layers;  ///< per row of the output
+  Grid source, output;
+  std::optional<VoxelPlaces> places;     ///< of filters
+  std::optional<OverlapWeights> shares;  ///< of Intensity::conservative
+  std::vector<LayerRange> layers;        ///< per row of the output
 };
 
 WarpOperator::WarpOperator(const Grid& source,
                            const Mesh& mesh,
                            const std::vector<Point3>& deformed,
                            const WarpOperatorOptions& options)
-    : state_(std::make_unique<State>(source, mesh, deformed, options)) {}
+    : state_(std::make_unique<State>(operator_plan(source, mesh, options), deformed, options)) {}
 
 WarpOperator::WarpOperator(WarpOperator&&) noexcept = default;
 WarpOperator& WarpOperator::operator=(WarpOperator&&) noexcept = default;
 WarpOperator::~WarpOperator() = default;
 
 const Grid& WarpOperator::source_grid() const {
-  return state_->places.source_grid();
+  return state_->source;
 }
 
 const Grid& WarpOperator::output_grid() const {
-  return state_->places.output_grid();
+  return state_->output;
 }
 
 std::vector<std::uint8_t> WarpOperator::support() const {
   std::vector<std::uint8_t> marks(static_cast<std::size_t>(output_grid().voxel_count()));
-  parallel_for(state_->threads, state_->places.row_count(), [&](std::int64_t row) {
-    state_->for_taps(row, [&](std::int64_t voxel, const OperatorTaps&) {
-      marks[static_cast<std::size_t>(voxel)] = 1;
-    });
+  parallel_for(state_->threads, state_->row_count(), [&](std::int64_t row) {
+    state_->for_weights(
+        row, [&](std::int64_t voxel, const auto&) { marks[static_cast<std::size_t>(voxel)] = 1; });
   });
   return marks;
 }
@@ -235,10 +280,10 @@ void WarpOperator::forward(std::span<const double> x, std::span<double> y) const
   std::vector<double> memory;
   const double* const samples = state_->tapped(x, components, memory);
   const std::int64_t row_size = output_grid().dims[0] * components;
-  parallel_for(state_->threads, state_->places.row_count(), [&](std::int64_t row) {
+  parallel_for(state_->threads, state_->row_count(), [&](std::int64_t row) {
     std::fill_n(y.data() + row * row_size, row_size, 0.0);
-    state_->for_taps(row, [&](std::int64_t voxel, const OperatorTaps& taps) {
-      add_samples(taps, samples, components, y.data() + voxel * components);
+    state_->for_weights(row, [&](std::int64_t voxel, const auto& weights) {
+      add_samples(weights, samples, components, y.data() + voxel * components);
     });
   });
 }
@@ -250,15 +295,16 @@ void WarpOperator::adjoint(std::span<const double> y, std::span<double> x) const
   parallel_tasks(state_->threads, slabs, [&](std::int64_t slab) {
     const std::int64_t begin = layer_count * slab / slabs, end = layer_count * (slab + 1) / slabs;
     std::fill(x.data() + begin * slice * components, x.data() + end * slice * components, 0.0);
-    for (std::int64_t row = 0; row < state_->places.row_count(); ++row) {
+    for (std::int64_t row = 0; row < state_->row_count(); ++row) {
       const State::LayerRange& range = state_->layers[static_cast<std::size_t>(row)];
       if (range.last < begin || range.first >= end) continue;
-      state_->for_taps(row, [&](std::int64_t voxel, const OperatorTaps& taps) {
-        spread_values(taps, y.data() + voxel * components, components, begin, end, slice, x.data());
+      state_->for_weights(row, [&](std::int64_t voxel, const auto& weights) {
+        spread_values(weights, y.data() + voxel * components, components, begin, end, slice,
+                      x.data());
       });
     }
   });
-  if (state_->filter != Filter::bspline) return;
+  if (!state_->has_coefficients()) return;
   // Coefficients are P s, and with D = 1/2 at the ends of an axis, 1 elsewhere, P^T = D P D^-1:
   // P^-1 is symmetric after its first and last row are halved.
   scale_ends(x, source_grid(), components, 2.0);
@@ -269,13 +315,17 @@ void WarpOperator::adjoint(std::span<const double> y, std::span<double> x) const
 std::vector<Point3> WarpOperator::node_gradient(std::span<const double> x,
                                                 std::span<const double> y) const {
   const int components = state_->check_sizes(x, y);
+  if (!state_->places) {
+    throw std::invalid_argument(
+        "node_gradient: conservative shares have no derivatives; choose intensity value");
+  }
   if (state_->filter == Filter::nearest) {
     throw std::invalid_argument(
         "node_gradient: filter nearest has no slope; choose linear, cubic, bspline or lanczos");
   }
   std::vector<double> memory;
   const double* const samples = state_->tapped(x, components, memory);
-  const VoxelPlaces& places = state_->places;
+  const VoxelPlaces& places = *state_->places;
   // Per tetrahedron and node of its cell, by output index; summed below in the order of tetrahedra.
   std::vector<std::array<Point3, 8>> parts(static_cast<std::size_t>(places.tet_count()));
   parallel_for(state_->threads, places.tet_count(), [&](std::int64_t t) {

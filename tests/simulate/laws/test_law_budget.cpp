@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/simulate/crossing.hpp"
 #include "tests/simulate/law_scenes.hpp"
@@ -69,6 +71,53 @@ TEST(StepBudget, IsRememberedByACheckpoint) {
   EXPECT_TRUE(other.record().out_of_time);
   run(other, 1);
   EXPECT_FALSE(other.record().out_of_time);
+}
+
+/// Steps that end by the clock in the middle of solves and divisions, whatever time these take
+/// here.
+TEST(StepBudget, IsRepeatedByItsCountsBitForBit) {
+  Scene scene = clash();
+  scene.solver.contact_tolerance = 1e-9;  // more to end
+  for (const double seconds : {1e-9, 1e-4, 1e-3}) {
+    Simulator timed(scene, {.threads = 1, .max_step_seconds = seconds});
+    Simulator counted(scene, {.threads = 1, .max_step_seconds = 1});
+    for (int n = 0; n < 40; ++n) {
+      timed.step();
+      const StepLimit limit = timed.step_limit();
+      EXPECT_EQ(timed.record().out_of_time, limit.checks >= 0);
+      counted.step(limit);
+      EXPECT_EQ(counted.step_limit(), limit);
+      ASSERT_EQ(counted.checkpoint(), timed.checkpoint()) << seconds << " s, step " << n;
+    }
+  }
+}
+
+/// Counts chosen by hand end a step anywhere, also where the clock would not.
+TEST(StepBudget, MayEndAtAnyCount) {
+  Simulator simulator(clash(), {.threads = 1, .max_step_seconds = 1e6});
+  run(simulator, 15);  // they touch
+  const std::vector<std::byte> start = simulator.checkpoint();
+  simulator.step({});
+  EXPECT_EQ(simulator.step_limit(), StepLimit{});
+  const std::vector<std::byte> whole = simulator.checkpoint();
+  int ended = 0;
+  for (std::int64_t checks = 0; checks < 12; ++checks) {
+    std::vector<std::byte> first;
+    for (int n = 0; n < 2; ++n) {
+      simulator.restore(start);
+      simulator.step({.checks = checks});
+      if (n == 0) first = simulator.checkpoint();
+    }
+    EXPECT_EQ(simulator.checkpoint(), first);
+    EXPECT_EQ(simulator.record().out_of_time, first != whole);
+    ended += simulator.record().out_of_time ? 1 : 0;
+  }
+  EXPECT_GT(ended, 4);
+}
+
+TEST(StepBudget, NeedsALimitToFollowCounts) {
+  Simulator simulator(clash());
+  EXPECT_THROW(simulator.step(StepLimit{}), std::invalid_argument);
 }
 
 TEST(StepBudget, HasToBePositive) {

@@ -1,0 +1,26 @@
+/// @file live_start.hpp
+/// How a live simulation starts.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <tetwarp/simulate.hpp>
+
+#include "host/view/input_log.hpp"
+#include "host/view/view_options.hpp"
+
+namespace tetwarp::view {
+
+/// Whether a replay has steps that a limit of time ended.
+bool has_limits(const std::optional<InputLog>& replay);
+
+/// One thread where steps that a limit of time ends are recorded or repeated.
+/// @throws std::invalid_argument  these cannot be repeated: several threads, back end cuda
+SimulateOptions simulate_options(const ViewOptions& of, const std::optional<InputLog>& replay);
+
+/// Goes on from ViewOptions::restart, if that is a file. @returns the checkpoint of the state
+/// @throws IoError  it is no checkpoint of this scene
+std::vector<std::byte> first_state(const ViewOptions& options, Simulator& simulator);
+
+}  // namespace tetwarp::view
