@@ -8,6 +8,7 @@
 #include "kernels/warp/gaussian_label.hpp"
 #include "kernels/warp/hex_map.hpp"
 #include "kernels/warp/row_resample.hpp"
+#include "kernels/warp/surface_tree.hpp"
 #include "kernels/warp/voxel_fields.hpp"
 
 namespace tetwarp {
