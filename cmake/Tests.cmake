@@ -280,7 +280,8 @@ if(NOT BUILD_SHARED_LIBS)
   # cuda is the emulated device, in the other a real one.
   add_library(tetwarp_backend_tests OBJECT
     tests/contact/test_contact_cuda.cpp
-    tests/warp/test_blocks.cpp tests/warp/test_grid_point_masks.cpp tests/warp/test_map_points.cpp
+    tests/warp/test_blocks.cpp tests/warp/test_grid_point_masks.cpp tests/warp/test_label_rules.cpp
+    tests/warp/test_map_points.cpp
     tests/warp/test_parity.cpp
     tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
     tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp

@@ -27,6 +27,10 @@ constexpr EnumName<Filter> words<Filter>[] = {
     {Filter::linear, "linear"},   {Filter::nearest, "nearest"}, {Filter::cubic, "cubic"},
     {Filter::bspline, "bspline"}, {Filter::lanczos, "lanczos"}, {Filter::labels, "labels"}};
 template <>
+constexpr EnumName<LabelRule> words<LabelRule>[] = {{LabelRule::linear, "linear"},
+                                                    {LabelRule::volume, "volume"},
+                                                    {LabelRule::gaussian, "gaussian"}};
+template <>
 constexpr EnumName<Overshoot> words<Overshoot>[] = {{Overshoot::keep, "keep"},
                                                     {Overshoot::clamp, "clamp"}};
 template <>
@@ -104,6 +108,7 @@ std::span<const EnumName<Enum>> names_of() {
 template TETWARP_EXPORT std::span<const EnumName<Backend>> names_of();
 template TETWARP_EXPORT std::span<const EnumName<PixelType>> names_of();
 template TETWARP_EXPORT std::span<const EnumName<Filter>> names_of();
+template TETWARP_EXPORT std::span<const EnumName<LabelRule>> names_of();
 template TETWARP_EXPORT std::span<const EnumName<Overshoot>> names_of();
 template TETWARP_EXPORT std::span<const EnumName<Quantity>> names_of();
 template TETWARP_EXPORT std::span<const EnumName<Intensity>> names_of();

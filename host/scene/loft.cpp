@@ -25,8 +25,7 @@ constexpr double most_triangles = 1e7;
 /// Of the ellipses of the stations, about [m].
 double mean_perimeter(const LoftTube& tube) {
   double sum = 0;
-  for (const LoftStation& station : tube.stations)
-    sum += pi * (station.radii[0] + station.radii[1]);
+  for (const auto& [center, radii, direction] : tube.stations) sum += pi * (radii[0] + radii[1]);
   return sum / static_cast<double>(tube.stations.size());
 }
 

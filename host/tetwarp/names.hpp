@@ -19,8 +19,8 @@ struct EnumName {
 };
 
 /// All words of an enum, in the order in which help lists them. Defined for Backend, PixelType,
-/// Filter, Overshoot, Quantity, Intensity, Outside, Deformation, FrictionLaw, AdhesionRule,
-/// ContactMethod, ContactCoupling, ContactMeasure, ContactPrecision, ContactStatus,
+/// Filter, LabelRule, Overshoot, Quantity, Intensity, Outside, Deformation, FrictionLaw,
+/// AdhesionRule, ContactMethod, ContactCoupling, ContactMeasure, ContactPrecision, ContactStatus,
 /// AdhesionIntegrator, BodyKind, TransferLookup, MaterialMean and MassKind, and in tetwarp::io for
 /// Axes, ContactStart and FileKind; a use for another enum does not link.
 template <class Enum>

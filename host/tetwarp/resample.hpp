@@ -51,7 +51,9 @@ TETWARP_EXPORT std::vector<Point3> transformed(const Transform& transform,
 
 /// Choices of resample(). It runs on the processor.
 struct ResampleOptions {
-  Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
+  Filter filter = Filter::linear;            ///< 64-bit integers: nearest and labels only
+  LabelRule label_rule = LabelRule::linear;  ///< with Filter::labels; not LabelRule::volume
+  LabelGaussian label_gaussian = {};
   Overshoot overshoot = Overshoot::keep;
   double background = 0;       ///< beyond the source; rounded to the pixel type, saturated
   bool only_in_field = false;  ///< background beyond displacement fields and splines, too

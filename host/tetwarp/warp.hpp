@@ -29,6 +29,28 @@ enum class Overshoot {
   clamp  ///< limited to the least and largest sample of the source, component by component
 };
 
+/// Which label a voxel gets with Filter::labels.
+enum class LabelRule {
+  linear,  ///< at the voxel's center the label with the largest sum of linear weights
+  /// The label with the largest volume in the voxel's box, exactly: the source's voxels are boxes
+  /// that the tetrahedra move. What is not covered, or comes from beyond the source, counts for the
+  /// background. Shares of a box that differ by at most 2^-16 are equal; of equal ones the lowest
+  /// label wins. For outputs of larger voxels and meshes that shrink; at most 32 bits
+  volume,
+  /// At the voxel's center the label with the largest sum of Gaussian weights, as
+  /// LabelImageGaussianInterpolateImageFunction of ITK; see LabelGaussian. At most 32 bits
+  gaussian
+};
+
+/// The Gaussian of LabelRule::gaussian. The weight of a source voxel is the Gaussian's integral
+/// over its box; sums that differ by at most 2^-40 of the whole integral are equal, and of equal
+/// ones the lowest label wins. The defaults are those of ITK and SimpleITK.
+struct LabelGaussian {
+  double sigma = 1;   ///< standard deviation, above 0 [source voxel]
+  double cutoff = 1;  ///< source voxels within it have weights (alpha of ITK), above 0 [sigma];
+                      ///< at most 8 source voxels
+};
+
 /// The physical meaning of samples, which determines how they change where volume changes.
 enum class Intensity {
   value,    ///< a property of the material point: unchanged
@@ -103,7 +125,9 @@ struct SourceWindow {
 
 /// Options of a warp. The defaults suit most uses.
 struct WarpOptions {
-  Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
+  Filter filter = Filter::linear;            ///< 64-bit integers: nearest and labels only
+  LabelRule label_rule = LabelRule::linear;  ///< another one only with Filter::labels
+  LabelGaussian label_gaussian = {};
   Overshoot overshoot = Overshoot::keep;
   /// Averages where a tetrahedron maps the step from voxel to voxel to more than 1.5 voxels of the
   /// source: one sample per source voxel of the step, at most 16 per axis. Not with nearest and
@@ -116,8 +140,8 @@ struct WarpOptions {
   double background = 0.0;               ///< rounded to the pixel type, saturated at its limits
   std::optional<Grid> output_grid = {};  ///< nothing: the grid of the sources
   std::optional<Region> region = {};     ///< part of the output grid to compute; nothing: all
-  /// Part of the source grid that is in memory; nothing: all. Not with Filter::bspline and
-  /// Intensity::conservative, which read whole sources.
+  /// Part of the source grid that is in memory; nothing: all. Not with Filter::bspline,
+  /// Intensity::conservative and a LabelRule but linear, which read whole sources.
   std::optional<SourceWindow> source_window = {};
   Backend backend = Backend::automatic;
   int device = 0;             ///< CUDA device number

@@ -1,6 +1,7 @@
 #include "host/warp/backend_choice.hpp"
 
 #include "host/base/parallel.hpp"
+#include "host/warp/box_sums.hpp"
 #include "host/warp/device_start.hpp"
 
 namespace tetwarp {
@@ -29,7 +30,7 @@ double estimated_cpu_seconds(const WarpOptions& options, double samples, bool ha
   // docs/benchmarks.md, what features cost, over the plain step.
   if (options.antialias) nanoseconds *= 8;
   if (options.intensity == Intensity::density) nanoseconds *= 4;
-  if (options.intensity == Intensity::conservative) nanoseconds = 2100;
+  if (sums_boxes(options)) nanoseconds = 2100;
   if (has_hexahedra) nanoseconds += 220;
   return 1e-9 * nanoseconds * samples / thread_count(options.threads);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/base/warp_backend.hpp"
+#include "host/warp/box_sums.hpp"
 #include "host/warp/target.hpp"
 #include "kernels/base/view.hpp"
 
@@ -31,7 +32,7 @@ class WarpOutputs {
       : exec_(exec),
         frame_(frame),
         volume_count_(plan.sources.size()),
-        always_owns_(extends(plan.options.outside)),
+        always_owns_(extends(plan.options.outside) || takes_gaussian(plan.options)),
         voxel_bytes_(voxel_bytes_of(plan.sources)) {
     for (Slot& slot : slots_) slot.arrays.resize(voxel_bytes_.size());
   }
@@ -60,8 +61,8 @@ class WarpOutputs {
 
   /// Where an executor writes volume s.
   void* volume(std::size_t s, const WarpTarget& target) { return writable(s, target); }
-  /// Where it writes the other arrays; null: not written. Owners have memory also when only a field
-  /// or voxels outside are computed from them.
+  /// Where it writes the other arrays; null: not written. Owners have memory also when only a
+  /// field, voxels outside or labels are computed from them.
   WarpTarget extra(const WarpTarget& target) {
     WarpTarget arrays;
     for (std::size_t e = 0; e < extra_outputs.size(); ++e) {

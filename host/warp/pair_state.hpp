@@ -7,6 +7,7 @@
 
 #include "host/base/warp_backend.hpp"
 #include "host/warp/bad_positions.hpp"
+#include "host/warp/box_sums.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/mesh_nodes.hpp"
 #include "host/warp/step_counters.hpp"
@@ -106,8 +107,8 @@ class PairState {
     return {list.pairs.const_view(list.size), list.ranges.const_view(cell_count() + 1)};
   }
   std::int64_t cell_count() const { return geometry_.frame.cell_count(); }
-  /// With conservative intensity a cell needs every tetrahedron that touches a box of its voxels.
-  bool keeps_totals() const { return options_.intensity == Intensity::conservative; }
+  /// Where voxels are sums over boxes a cell needs every tetrahedron that touches one of its boxes.
+  bool widens_boxes() const { return sums_boxes(options_); }
   /// Whether pairs are culled by masks of grid points.
   bool uses_masks(const CullSwitches& switches) const {
     return options_.expert.skip.grid_point_masks && (switches.reject || switches.accept);

@@ -122,7 +122,7 @@ class DevicePairs : public PairState<Exec> {
                                 {this->counters()->spread.moved, SpreadCounts::places},
                                 {&this->counters()->work.candidates, 1}};
     };
-    if (this->keeps_totals()) {
+    if (this->widens_boxes()) {
       exec_.grouped_scan("warp/setup", tets, body(std::true_type{}), sums);
     } else if (mesh_.hexes.nodes.size > 0) {
       exec_.grouped_scan("warp/setup", tets, body(std::false_type{}), sums);
@@ -133,7 +133,7 @@ class DevicePairs : public PairState<Exec> {
 
   /// The sums of the candidate pairs of the tetrahedra, in groups for the lanes of their setup.
   GroupedSums candidate_sums() const {
-    const bool shares = !this->keeps_totals() && mesh_.hexes.nodes.size == 0;
+    const bool shares = !this->widens_boxes() && mesh_.hexes.nodes.size == 0;
     return view(candidate_sums_, this->tet_count(), shares ? sum_shift - 2 : sum_shift);
   }
 
@@ -141,8 +141,8 @@ class DevicePairs : public PairState<Exec> {
     const std::int64_t cells = this->cell_count();
     List& now = lists_[now_];
     now.size = pair_capacity_;
-    const CullSwitches switches{options_.expert.skip.rejected_cells && !this->keeps_totals(),
-                                options_.expert.skip.accepted_cells && !this->keeps_totals()};
+    const CullSwitches switches{options_.expert.skip.rejected_cells && !this->widens_boxes(),
+                                options_.expert.skip.accepted_cells && !this->widens_boxes()};
     SpreadCounts& spread = this->counters()->spread;
     const auto spread_over = [](std::int64_t* places) {
       return SpreadCounter{places, SpreadCounts::places};

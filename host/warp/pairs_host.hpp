@@ -63,7 +63,7 @@ class HostPairs : public PairState<Exec> {
     exec_.zero("warp/setup", View<MeshCounters>{&this->counters()->mesh, 1});
     const TetSetupOp setup = setup_body();
     tet_setup(exec_, setup);
-    if (this->keeps_totals()) tet_widen(exec_, setup, {});
+    if (this->widens_boxes()) tet_widen(exec_, setup, {});
     sum_up(setup, {});
     cull(lists_[now_]);
   }
@@ -83,7 +83,7 @@ class HostPairs : public PairState<Exec> {
     if (this->is_most(moved)) return false;
     exec_.zero("warp/setup", setup.pair_counts);
     moved_tet_setup(exec_, moved_offsets_.const_view(tets + 1), moved, setup);
-    if (this->keeps_totals()) tet_widen(exec_, setup, moved_.const_view(tets));
+    if (this->widens_boxes()) tet_widen(exec_, setup, moved_.const_view(tets));
     sum_up(setup, moved_offsets_.const_view(tets + 1));
     cull(fresh_);
     List& now = lists_[now_];
@@ -110,7 +110,7 @@ class HostPairs : public PairState<Exec> {
   void cull(List& list) {
     const std::int64_t tets = this->tet_count();
     const View<const std::int64_t> pair_offsets = pair_offsets_.const_view(tets + 1);
-    const CullSwitches switches{options_.expert.skip.rejected_cells && !this->keeps_totals(),
+    const CullSwitches switches{options_.expert.skip.rejected_cells && !this->widens_boxes(),
                                 options_.expert.skip.accepted_cells};
     candidates_.reserve(pair_total_);
     const auto cull_by = [&](const auto& verdict) {

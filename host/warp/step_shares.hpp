@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "host/warp/box_sums.hpp"
 #include "host/warp/geometry.hpp"
 
 namespace tetwarp {
@@ -22,15 +23,13 @@ struct StepShares {
   double fields = 0;
 
   StepShares(const WarpPlan& plan, const FieldTarget& to) {
-    constexpr double with_transforms = 6, conservative = 70, fold_count = 10, field = 0.7;
+    constexpr double with_transforms = 6, box_sums = 70, fold_count = 10, field = 0.7;
     if (plan.options.count_folded) fold = fold_count;
     for (std::size_t s = 0; s < plan.sources.size(); ++s) {
       const bool is_plain =
           plan.options.intensity == Intensity::value &&
           (plan.options.quantities.empty() || plan.options.quantities[s] == Quantity::components);
-      sources.push_back(plan.options.intensity == Intensity::conservative ? conservative
-                        : is_plain                                        ? 1
-                                                                          : with_transforms);
+      sources.push_back(sums_boxes(plan.options) ? box_sums : is_plain ? 1 : with_transforms);
     }
     for (const float* one : {to.displacement, to.jacobian, to.gradient, to.strain, to.forward}) {
       if (one != nullptr) fields += field;

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/warp/gaussian_label.hpp"
+
 namespace tetwarp {
 namespace {
 void check_filter(const VolumeView& source, Filter filter) {
@@ -65,6 +67,33 @@ void check_conservative(const WarpOptions& options) {
   }
   if (wrong != nullptr) {
     throw std::invalid_argument(std::string("intensity: to keep the total, ") + wrong);
+  }
+}
+
+/// Rejects what the rules for labels have no meaning for.
+void check_label_rule(std::span<const VolumeView> sources, const WarpOptions& options) {
+  if (options.label_rule == LabelRule::linear) return;
+  const std::string rule = std::string("label rule: ") + name_of(options.label_rule);
+  if (options.filter != Filter::labels) {
+    throw std::invalid_argument(rule + " is for labels; set the filter to labels");
+  }
+  if (options.label_rule == LabelRule::volume && options.outside != Outside::background) {
+    throw std::invalid_argument(rule +
+                                " knows labels in the mesh alone; set outside to background");
+  }
+  if (extends(options.outside)) {
+    throw std::invalid_argument(rule + " has no labels beyond the mesh but those of the source; " +
+                                "set outside to background or identity");
+  }
+  const auto& [sigma, cutoff] = options.label_gaussian;
+  if (!(sigma > 0 && cutoff > 0 && sigma * cutoff <= GaussianWindow::max_reach)) {
+    throw std::invalid_argument(
+        "label gaussian: expected sigma and cutoff above 0, and a product of at most 8 voxels");
+  }
+  for (const VolumeView& source : sources) {
+    if (size_of(source.type) != 8) continue;
+    throw std::invalid_argument(rule + " takes labels of at most 32 bits, the source has " +
+                                name_of(source.type));
   }
 }
 
@@ -134,6 +163,7 @@ void check_transforms(std::span<const VolumeView> sources, const WarpOptions& op
   }
   if (options.intensity == Intensity::conservative) check_conservative(options);
   check_outside(options);
+  check_label_rule(sources, options);
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const Quantity quantity =
         options.quantities.empty() ? Quantity::components : options.quantities[s];

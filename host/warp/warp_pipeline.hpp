@@ -6,11 +6,13 @@
 
 #include "host/base/pixel_dispatch.hpp"
 #include "host/base/warp_backend.hpp"
+#include "host/warp/box_sums.hpp"
 #include "host/warp/cell_raster_stage.hpp"
 #include "host/warp/counter_totals.hpp"
 #include "host/warp/extension.hpp"
 #include "host/warp/fields.hpp"
 #include "host/warp/geometry.hpp"
+#include "host/warp/label_stages.hpp"
 #include "host/warp/outputs.hpp"
 #include "host/warp/overlap_stage.hpp"
 #include "host/warp/pairs.hpp"
@@ -173,6 +175,7 @@ class WarpPipeline : public WarpBackend {
                                     extra.owner != nullptr ? geometry_.frame.voxel_count() : 0};
     fields_.run(pairs_, owners, stale_, extra.fields);
     if (extension_.is_requested()) extend(target, owners, extra.fields.displacement);
+    if (takes_gaussian(plan_.options)) choose_labels(target, owners);
     voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
   }
 
@@ -202,12 +205,28 @@ class WarpPipeline : public WarpBackend {
     }
   }
 
+  /// Labels of all sources by Gaussian weights.
+  void choose_labels(const WarpTarget& target, View<const std::int32_t> owners) {
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
+        const GaussianLabels labels =
+            gaussian_labels(plan_.sources[s].grid, number_view(sources_.template view<T>(s).data),
+                            plan_.options.label_gaussian,
+                            static_cast<double>(rounded_to<T>(plan_.options.background)));
+        const HexMesh mesh = {pairs_.hexes(), pairs_.tets(), pairs_.nodes(), pairs_.rest()};
+        voxel_gaussian(exec_,
+                       {pairs_.setups(), mesh, owners, stale_, geometry_.frame, geometry_.outside,
+                        labels, number_view(static_cast<T*>(outputs_.volume(s, target)))});
+      });
+    }
+  }
+
   /// What stages need to sample source s.
   template <class T>
   void set_samples(std::size_t s, void* volume, RasterJob<T>& job) {
     job.frame = geometry_.frame;
     job.source = sources_.template view<T>(s);
-    job.filter = plan_.options.filter;
+    job.filter = takes_gaussian(plan_.options) ? Filter::nearest : plan_.options.filter;
     job.outside = geometry_.outside;
     job.background = rounded_to<T>(plan_.options.background);
     job.copy_whole_shifts = plan_.options.expert.skip.copied_voxels;
@@ -238,17 +257,17 @@ class WarpPipeline : public WarpBackend {
       job.transforms = transforms_.transforms(s, pairs_.tet_count());
       job.outside_transform = transforms_.outside();
       job.reorientation = transforms_.reorientation(s);
-      const bool has_groups = plan_.options.expert.skip.interior_cells &&
-                              plan_.options.intensity != Intensity::conservative;
+      const bool has_groups =
+          plan_.options.expert.skip.interior_cells && !sums_boxes(plan_.options);
       if constexpr (!Exec::reads_are_free && can_blend<T> && sizeof(ArithmeticOf<T>) == 4) {
         if (has_groups && has_plain_cells(job)) {
           job.packed = sources_.packed(s, job.source);
         }
       }
       const CellWorkOp<T> work = work_of_cells(s, job);
-      if (plan_.options.intensity == Intensity::conservative) {
+      if (sums_boxes(plan_.options)) {
         cell_work(exec_, work);
-        overlap(s, work.job, part);
+        sum_boxes(s, work.job, part);
       } else {
         cell_raster_.run(exec_, work, has_groups, s == 0 ? &pairs_.counters()->lists : nullptr,
                          part);
@@ -259,25 +278,30 @@ class WarpPipeline : public WarpBackend {
     });
   }
 
-  /// Averages over the voxels' boxes; for the first source after a raster of mask and owners.
+  /// Sums over the voxels' boxes; for the first source after a raster of mask and owners.
   template <class T>
-  void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
-    VoxelOverlapOp op = {job.setups,
-                         job.tets,
-                         job.transforms,
-                         pairs_.list(),
-                         job.cell_work,
-                         job.frame,
-                         number_view(job.source.data),
-                         {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
-                         job.source.components,
-                         roundings_.begin(s, job.cell_work, number_view(job.volume))};
+  void sum_boxes(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
+    const BoxOverlaps boxes = {job.setups,
+                               job.tets,
+                               pairs_.list(),
+                               job.cell_work,
+                               job.frame,
+                               number_view(job.source.data),
+                               {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
+                               job.source.components};
+    const NumberView volume = number_view(job.volume);
+    const View<const VoxelTransform> transforms = job.transforms;
     job.filter = Filter::nearest;
     job.transforms = {};
     constexpr double raster = 0.01;  // of the time of this source
     if (s == 0) cell_raster(exec_, job, part_of(progress, 0, raster));
-    overlap_.run(exec_, op, pairs_.nodes(), pairs_.rest(), voxel_ratio_of(geometry_.axes),
-                 part_of(progress, s == 0 ? raster : 0, 1));
+    const ProgressPart part = part_of(progress, s == 0 ? raster : 0, 1);
+    if (takes_majority(plan_.options)) {
+      majority_stage(exec_, {boxes, volume, static_cast<double>(job.background)}, part);
+      return;
+    }
+    const VoxelOverlapOp op = {boxes, transforms, roundings_.begin(s, job.cell_work, volume)};
+    overlap_.run(exec_, op, pairs_.nodes(), pairs_.rest(), voxel_ratio_of(geometry_.axes), part);
     roundings_.sum(s);
   }
 
@@ -285,7 +309,8 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   CellWorkOp<T> work_of_cells(std::size_t s, const RasterJob<T>& job) {
     CellWorkOp<T> op = {job, {}, stale_, {}, {}};
-    if (plan_.options.expert.skip.constant_cells && job.transforms.size == 0) {
+    const bool is_sampled = job.transforms.size == 0 && !sums_boxes(plan_.options);
+    if (plan_.options.expert.skip.constant_cells && is_sampled) {
       op.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
     }
     if (stale_.size == 0 && op.uniform.reach.size == 0) return op;

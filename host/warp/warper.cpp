@@ -52,6 +52,11 @@ void check_window(const std::vector<VolumeView>& sources, const WarpOptions& opt
   if (options.intensity == Intensity::conservative) {
     throw std::invalid_argument("source window: conservative needs the whole source; use density");
   }
+  if (options.label_rule != LabelRule::linear) {
+    throw std::invalid_argument(std::string("source window: label rule ") +
+                                name_of(options.label_rule) +
+                                " needs the whole source; use linear");
+  }
   if (extends(options.outside)) {
     throw std::invalid_argument(
         std::string("source window: outside ") + name_of(options.outside) +

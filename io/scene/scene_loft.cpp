@@ -86,6 +86,7 @@ void read_loft(const SceneValue& shape, SceneObject& object, SceneFiles& files, 
       tubes.push_back(read_tube(keys));
       keys.finish();
     }
+    if (tubes.empty()) list->fail("is empty, expected a tube or more");
   } else {
     tubes.push_back(read_tube(object));
   }

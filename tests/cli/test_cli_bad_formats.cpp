@@ -154,7 +154,8 @@ TEST(BadFormats, BatchFilesNameTheirKeys) {
            {"b.json", job + R"(, "volume": 7}]})",
             "b.json: 'volume' holds 7, expected the name of a file"},
            {"c.json", job + R"(, "volume": "volume.vtkhdf", "treads": 2}]})",
-            "c.json: unknown key 'treads'; keys are volume, mesh and the options of tetwarp warp"},
+            "c.json: unknown key 'treads'; keys are volume, mesh, transform and the options of "
+            "tetwarp warp"},
            {"d.json", R"({"jobs": 3})", "d.json: expected {\"jobs\": [...]} with one job"}}) {
     write_text(scene / bad.name, bad.text);
     expect_refused_line(scene, {"warp", "--batch", bad.name, "--quiet"}, bad.phrase);

@@ -105,9 +105,10 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
   const auto& jobs = report["jobs"];
   ASSERT_EQ(jobs.size(), 6u);
   EXPECT_EQ(jobs[1]["status"], "failed");
-  EXPECT_EQ(jobs[1]["error"],
-            "jobs/jobs.json: unknown key 'filtre'; keys are volume, mesh and the options of "
-            "tetwarp warp");
+  EXPECT_EQ(
+      jobs[1]["error"],
+      "jobs/jobs.json: unknown key 'filtre'; keys are volume, mesh, transform and the options "
+      "of tetwarp warp");
   EXPECT_EQ(jobs[1]["volumes"], Names{"jobs/../volume.vtkhdf"});
   EXPECT_EQ(jobs[1]["mesh"], "jobs/../mesh.vtkhdf");
   EXPECT_EQ(jobs[1]["output"], "jobs/b.vtkhdf");
@@ -118,14 +119,11 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
   EXPECT_EQ(jobs[5]["counts"]["voxels"], 960);
 }
 
-/// Jobs are warps by a mesh.
-TEST_F(Batch, RefusesOptionsOfFields) {
+TEST_F(Batch, RefusesOptionsOfFieldsForMeshes) {
   const CommandResult result = run(batch_of({job("a.vtkhdf", R"(, "fsl": "relative")")}));
 
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.err.find("job 1: jobs/jobs.json: --fsl is for warps by a field"),
-            std::string::npos)
-      << result.err;
+  EXPECT_NE(result.err.find("--fsl is for warp fields of FSL"), std::string::npos) << result.err;
 }
 
 TEST_F(Batch, MakesTheFoldersOfItsOutputs) {

@@ -305,6 +305,21 @@ def check_series(run, random_numbers):
     run.refused("import", "both", "-o", "out.vtkhdf", "--series", "1.2.3")
     run.refused("info", "out.vtkhdf", "--series", SERIES)
 
+    run("export", "both", "-o", "out.nii", "--series", other)
+    expect("exported series", read_nifti(run.path("out.nii")), (samples[:, :, :3] + 1, affine))
+    run("render", "both", "-o", "out.png", "--series", other)
+    run("mesh", "both", "-o", "mesh.vtkhdf", "--cells", "3", "--threshold", "-1", "--series", SERIES)
+    run("deform", "mesh.vtkhdf", "-o", "moved.vtkhdf", "--kind", "translate", "--offset", "2,0,0",
+        "--steps", "1")
+    run("warp", "both", "moved.vtkhdf", "-o", "warped.nii", "--filter", "nearest", "--series", SERIES,
+        "--like", "both", "--like-series", other)
+    found, place = read_nifti(run.path("warped.nii"))
+    expect("warped onto a series", (found[1:], place), (samples[:-1, :, :3], affine))
+    run("compose", "moved.vtkhdf", "-o", "field.vtkhdf", "--like", "both", "--like-series", other)
+    run.refused("compose", "moved.vtkhdf", "-o", "field.vtkhdf", "--like", "both")
+    run.refused("warp", "both", "moved.vtkhdf", "-o", "warped.nii", "--series", SERIES,
+                "--like-series", other)
+
 
 def check_refusals(run, random_numbers):
     samples = random_numbers.integers(0, 120, DIMS).astype("i2")

@@ -1,17 +1,19 @@
-"""What the filters nearest and labels keep of a tube of one voxel that is turned in any direction.
+"""What the filters nearest and labels keep of a tube of one voxel that is turned in any direction, and
+labels by Gaussian weights beside those of SimpleITK.
 
 Usage: check_labels.py COMMAND
 
 The tube is resampled by random rotations through its middle, to its own grid and to a coarser one. NumPy computes
 the labels from their definitions in float64, and what share of each voxel lies in the turned tube from
 4x4x4 points in it. The figures of docs/guide.md are means of volume (of the true one) and Dice (with these shares).
+Where SimpleITK is installed, labels of its sitkLabelGaussian are compared with --label-rule gaussian.
 Exits 77 when NumPy is missing, 1 when labels or figures differ.
 """
 import sys
 import tempfile
 
 from check_images import read_nifti
-from check_transforms import LPS, Command, np, sampled, write_nifti
+from check_transforms import LPS, Command, np, sampled, sitk, write_nifti
 
 COUNT = 24  # voxels of 1 mm along each axis
 MIDDLE = np.full(3, COUNT / 2 - 0.5)
@@ -43,6 +45,35 @@ def nearest(tube, points):
     return np.where(inside, tube[index[..., 0], index[..., 1], index[..., 2]], 0)
 
 
+def write_turn(path, turn, shift):
+    """A turn about the middle, then a shift, as a transform of ITK."""
+    with open(path, "w") as file:
+        numbers = lambda row: " ".join(repr(float(x)) for x in row)
+        file.write("#Insight Transform File V1.0\n#Transform 0\n"
+                   "Transform: AffineTransform_double_3_3\n"
+                   f"Parameters: {numbers(turn.ravel())} {numbers(shift)}\n"
+                   f"FixedParameters: {numbers(LPS @ MIDDLE)}\n")
+
+
+def check_gaussian(run, random):
+    """Every label of a turned volume of blocks with noise, within the source and beyond it."""
+    blocks = np.kron(random.integers(1, 6, (6, 6, 6)), np.ones((4, 4, 4)))
+    noise = random.integers(0, 9, blocks.shape)
+    labels = np.where(random.random(blocks.shape) < 0.2, noise, blocks)
+    write_nifti(run.path("blocks.nii"), labels, np.eye(4))
+    write_turn(run.path("turn.tfm"), 0.8 * rotation(random), random.uniform(-0.5, 0.5, 3))
+    run("warp", "blocks.nii", "turn.tfm", "-o", "out.nii", "--filter", "labels",
+        "--label-rule", "gaussian", "--background", "77")
+    found = read_nifti(run.path("out.nii"))[0]
+    image = sitk.Cast(sitk.ReadImage(run.path("blocks.nii")), sitk.sitkInt16)
+    wanted = sitk.GetArrayFromImage(sitk.Resample(
+        image, image, sitk.ReadTransform(run.path("turn.tfm")), sitk.sitkLabelGaussian, 77.0)).T
+    differing = np.count_nonzero(found != wanted)
+    print(f"gaussian: {differing} of {wanted.size} labels differ from SimpleITK's")
+    if differing > 0 or len(np.unique(wanted)) < 6:
+        sys.exit("gaussian: other labels than SimpleITK's")
+
+
 def main():
     random = np.random.default_rng(7)
     tube = np.zeros((COUNT,) * 3, np.float32)
@@ -53,12 +84,7 @@ def main():
         write_nifti(run.path("tube.nii"), tube, np.eye(4))
         for _ in range(TURNS):
             turn, shift = rotation(random), random.uniform(-0.5, 0.5, 3)
-            with open(run.path("turn.tfm"), "w") as file:
-                numbers = lambda row: " ".join(repr(float(x)) for x in row)
-                file.write("#Insight Transform File V1.0\n#Transform 0\n"
-                           "Transform: AffineTransform_double_3_3\n"
-                           f"Parameters: {numbers(turn.ravel())} {numbers(shift)}\n"
-                           f"FixedParameters: {numbers(LPS @ MIDDLE)}\n")
+            write_turn(run.path("turn.tfm"), turn, shift)
             place = lambda x: (x - MIDDLE) @ (LPS @ turn @ LPS).T + MIDDLE + LPS @ shift
             for count in (24, 16):
                 volume = (COUNT / count) ** 3
@@ -79,6 +105,8 @@ def main():
                     dice = 2 * (share * label).sum() / (share.sum() + label.sum())
                     row = (label.sum() / share.sum(), dice)
                     found.setdefault((count, filter), []).append(row)
+        if sitk is not None:
+            check_gaussian(run, random)
     for case, rows in found.items():
         means = np.mean(rows, axis=0)
         print(f"{case[0]} voxels, {case[1]}: volume {means[0]:.2f}, Dice {means[1]:.2f}")

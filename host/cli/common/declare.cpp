@@ -50,9 +50,12 @@ void add_quiet(CLI::App& app, bool& is_quiet) {
   app.add_flag("--quiet", is_quiet, "print nothing but errors");
 }
 
-void add_series(CLI::App& app, std::string& series) {
-  app.add_option("--series", series,
-                 "of a folder of DICOM images: UID of the series to read [the only one]")
+CLI::Option* add_series(CLI::App& app, std::string& series, const std::string& option) {
+  const std::string whose = option == "--like-series" ? " that --like names" : "";
+  return app
+      .add_option(
+          option, series,
+          "of a folder of DICOM images" + whose + ": UID of the series to read [the only one]")
       ->type_name("UID");
 }
 

@@ -19,7 +19,8 @@ namespace tetwarp::cli {
 void add_quiet(CLI::App& app, bool& is_quiet);
 
 /// Declares the option --series: of a folder of DICOM images, the UID of the series to read.
-void add_series(CLI::App& app, std::string& series);
+/// @param option  its name
+CLI::Option* add_series(CLI::App& app, std::string& series, const std::string& option = "--series");
 
 /// Adds a subcommand.
 /// @param synopsis  what follows the name in the usage line, e.g. "VOLUME -o MESH"

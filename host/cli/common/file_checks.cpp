@@ -167,14 +167,16 @@ void check_volume(const std::string& path, const std::string& remedy) {
   }
 }
 
-void check_series(const std::string& series, const std::vector<std::string>& volumes) {
+void check_series(const std::string& series,
+                  const std::vector<std::string>& volumes,
+                  const std::string& option) {
   const auto is_folder = [](const std::string& path) {
     std::error_code error;
     return fs::is_directory(path, error);
   };
   if (series.empty() || std::ranges::any_of(volumes, is_folder)) return;
   throw IoError(volumes.front(), "",
-                "is no folder; --series is for folders of DICOM images, leave it out");
+                "is no folder; " + option + " is for folders of DICOM images, leave it out");
 }
 
 void check_mesh(const std::string& path, const std::string& remedy) {

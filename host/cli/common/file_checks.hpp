@@ -32,7 +32,10 @@ void check_kind(const std::string& path, FileKind expected, const std::string& r
 void check_volume(const std::string& path, const std::string& remedy);
 
 /// Checks that a series is named only if one of the volumes is a folder, of DICOM images.
-void check_series(const std::string& series, const std::vector<std::string>& volumes);
+/// @param option  that names it
+void check_series(const std::string& series,
+                  const std::vector<std::string>& volumes,
+                  const std::string& option = "--series");
 
 /// Checks that a file can be opened and is a mesh: VTKHDF, or by its name Gmsh's or VTK's.
 void check_mesh(const std::string& path, const std::string& remedy);

@@ -68,6 +68,9 @@ void Fingerprint::add(const NiftiFacts& facts) {
 void Fingerprint::add(const WarpOptions& options) {
   add(options.backend);
   add(options.filter);
+  add(options.label_rule);
+  add(options.label_gaussian.sigma);
+  add(options.label_gaussian.cutoff);
   add(options.overshoot);
   add(options.antialias);
   add(options.intensity);

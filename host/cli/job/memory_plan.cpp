@@ -135,6 +135,10 @@ std::string needs_all_at_once(const WarpArguments& arguments) {
   if (arguments.warp.intensity == Intensity::conservative) {
     return "conservative needs the whole source; use --intensity density";
   }
+  if (arguments.warp.label_rule != LabelRule::linear) {
+    return fmt::format("--label-rule {} needs the whole source; use linear",
+                       name_of(arguments.warp.label_rule));
+  }
   if (arguments.warp.filter == Filter::bspline) {
     return "bspline needs the whole source; use --filter cubic";
   }

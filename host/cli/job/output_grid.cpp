@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "host/base/index_space.hpp"
+#include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/job/step_selection.hpp"
 
@@ -92,10 +93,13 @@ Grid with_box_kept(const GridChoice& choice, const Grid& base) {
 template <class Bounds>
 Grid resolve(const GridChoice& choice, const Grid& source, const Bounds& bounds) {
   Grid grid = source;
+  check_series(choice.series, {choice.base}, "--like-series");
   if (choice.base == "bounds") {
     grid = bounds();
   } else if (choice.base != "same") {
-    grid = read_volume_header(choice.base).grid;
+    VolumeReadOptions read;
+    read.series = choice.series;
+    grid = read_volume_header(choice.base, read).grid;
   }
   if (choice.dims.has_value() != choice.spacing.has_value()) grid = with_box_kept(choice, grid);
   grid.dims = choice.dims.value_or(grid.dims);

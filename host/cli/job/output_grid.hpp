@@ -16,6 +16,7 @@ namespace tetwarp::cli {
 /// The options as they were given.
 struct GridChoice {
   std::string base = "same";  ///< "same", "bounds", or a volume file whose grid is taken
+  std::string series;         ///< UID of the DICOM series if `base` is a folder
   std::optional<std::array<std::int64_t, 3>> dims;
   std::optional<Point3> origin;
   std::optional<Point3> spacing;

@@ -47,7 +47,8 @@ Json facts_of_inputs(const WarpArguments& arguments) {
     for (const std::string& file : files_of(path)) inputs.push_back(facts_of(role, file));
   };
   for (const std::string& volume : arguments.volumes()) add("volume", volume);
-  add("mesh", arguments.mesh_file());
+  const bool is_transform = is_transform_file(arguments.mesh_file(), arguments.transform_options());
+  add(is_transform ? "transform" : "mesh", arguments.mesh_file());
   if (arguments.mesh.rest_file) add("rest", *arguments.mesh.rest_file);
   if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
     add("grid", arguments.grid.base);
@@ -95,10 +96,11 @@ bool is_older(const std::string& file, const std::string& output) {
 }
 }  // namespace
 
-ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& plan) {
+ProvenanceState provenance_state(const WarpArguments& arguments,
+                                 const std::vector<std::string>& outputs) {
   bool is_missing = false;
   Json inputs;
-  for (const std::string& output : plan.outputs()) {
+  for (const std::string& output : outputs) {
     const Json facts = read_facts(output + ".json");
     std::error_code error;
     if (facts.is_null() || !fs::is_regular_file(output, error)) {
@@ -122,25 +124,23 @@ ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& 
 }
 
 void write_provenance(const WarpArguments& arguments,
-                      const JobPlan& plan,
+                      const std::vector<std::string>& files,
                       const JobResult& result) {
   Json facts;
-  for (const VolumePlan& volume : plan.volumes) {
-    for (const std::string& output : volume.files) {
-      const std::string file = output + ".json";
-      if (!is_older(file, output)) continue;
-      if (facts.is_null()) {
-        facts = {{"tetwarp", TETWARP_VERSION},
-                 {"written", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
-                 {"backend", name_of(result.report.backend)},
-                 {"options", given_as_json(arguments)},
-                 {"inputs", facts_of_inputs(arguments)},
-                 {"warnings", result.warnings}};
-      }
-      Json own = facts;
-      own.update(facts_of_output(output));
-      write_finished_file(file, json_text(own, 2) + "\n");
+  for (const std::string& output : files) {
+    const std::string file = output + ".json";
+    if (!is_older(file, output)) continue;
+    if (facts.is_null()) {
+      facts = {{"tetwarp", TETWARP_VERSION},
+               {"written", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
+               {"backend", name_of(result.report.backend)},
+               {"options", given_as_json(arguments)},
+               {"inputs", facts_of_inputs(arguments)},
+               {"warnings", result.warnings}};
     }
+    Json own = facts;
+    own.update(facts_of_output(output));
+    write_finished_file(file, json_text(own, 2) + "\n");
   }
 }
 

@@ -1,8 +1,11 @@
 /// @file provenance.hpp
 /// Files beside outputs that tell what they were made from.
 #pragma once
-#include "host/cli/job/job_plan.hpp"
+#include <string>
+#include <vector>
+
 #include "host/cli/job/job_result.hpp"
+#include "host/cli/job/warp_arguments.hpp"
 
 namespace tetwarp::cli {
 
@@ -15,11 +18,16 @@ enum class ProvenanceState {
 
 /// Compares sizes, SHA-256, options and the version. Options that change no value (threads, memory,
 /// reports) may differ, and inputs may have moved.
-ProvenanceState provenance_state(const WarpArguments& arguments, const JobPlan& plan);
+/// @param outputs  of all steps and volumes of the job
+ProvenanceState provenance_state(const WarpArguments& arguments,
+                                 const std::vector<std::string>& outputs);
 
 /// Writes OUT.json for each file OUT of a job that lacks one or has an older one: the version, the
 /// back end, the options as given, and all inputs with their size and SHA-256, as JSON.
+/// @param files  that the job writes
 /// @throws IoError
-void write_provenance(const WarpArguments& arguments, const JobPlan& plan, const JobResult& result);
+void write_provenance(const WarpArguments& arguments,
+                      const std::vector<std::string>& files,
+                      const JobResult& result);
 
 }  // namespace tetwarp::cli

@@ -9,6 +9,7 @@
 
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/declare.hpp"
+#include "host/cli/job/label_rule_option.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -127,6 +128,7 @@ void declare_grid_options(CLI::App& app, GridChoice& grid) {
   app.add_option("--like", grid.base, "as --grid FILE: onto the grid of a volume")
       ->type_name("FILE")
       ->excludes("--grid");
+  add_series(app, grid.series, "--like-series");
   add_numbers(app, "--dims", grid.dims, "NI,NJ,NK",
               "voxels of the output grid; alone it keeps the base's box [--spacing]");
   add_numbers(app, "--origin", grid.origin, "X,Y,Z", "center of its first voxel");
@@ -138,6 +140,7 @@ void declare_grid_options(CLI::App& app, GridChoice& grid) {
 void declare_sampling_options(CLI::App& app, WarpOptions& warp) {
   add_choice(app, "--filter", warp.filter, choices_of<Filter>(),
              "interpolation between voxel centers [linear]");
+  declare_label_rule(app, warp);
   add_choice(app, "--overshoot", warp.overshoot, choices_of<Overshoot>(),
              "interpolated values beyond the source's range: cubic, bspline, lanczos [keep]");
   app.add_flag("--antialias", warp.antialias, "average samples where tetrahedra shrink the source");
@@ -301,6 +304,7 @@ void check_sampling(const WarpOptions& warp) {
     throw CLI::ValidationError(
         "--antialias", "cannot average samples with nearest and labels; use another --filter");
   }
+  check_label_rule(warp);
   if (warp.intensity == Intensity::conservative && warp.filter != Filter::linear) {
     throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
   }

@@ -36,7 +36,7 @@ struct SimulateArguments {
   std::string warped_body;  ///< empty: all that are made of a volume
   bool has_filter = false;  ///< --filter was given
   WarpOptions warp;
-  GridChoice grid{"bounds", {}, {}, {}, {}};
+  GridChoice grid{"bounds", {}, {}, {}, {}, {}};
   ExtraChoice extra;  ///< arrays beside the warped ones
   int compress = 0;
 

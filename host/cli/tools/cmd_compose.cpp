@@ -1,4 +1,4 @@
-/// @file cmd_compose.cpp
+///   file cmd_compose.cpp
 /// The subcommand compose.
 #include <fmt/format.h>
 
@@ -27,6 +27,7 @@ struct ComposeArguments {
   std::vector<std::string> words;
   std::string output;
   std::string like;
+  std::string like_series;
   StepSelection steps;
   MeshReadOptions mesh;
   std::optional<Axes> axes;
@@ -110,7 +111,10 @@ void print_chain_notes(const std::string& output, const Grid& grid, const ChainN
 int run_compose(const ComposeArguments& arguments) {
   check_volume_name(arguments.output);
   check_volume(arguments.like, "--like takes the grid of a volume");
-  const Grid grid = read_volume_header(arguments.like).grid;
+  check_series(arguments.like_series, {arguments.like}, "--like-series");
+  VolumeReadOptions read;
+  read.series = arguments.like_series;
+  const Grid grid = read_volume_header(arguments.like, read).grid;
   const std::vector<ChainLink> links = read_links(arguments);
   const std::vector<std::int64_t> steps = steps_of(arguments, links);
   std::vector<std::string> inputs{arguments.like};
@@ -168,6 +172,7 @@ void add_compose_command(CLI::App& app, Run& run) {
   command->add_option("--like", arguments->like, "volume whose grid the field gets")
       ->required()
       ->type_name("FILE");
+  add_series(*command, arguments->like_series, "--like-series");
   command
       ->add_option_function<std::string>(
           "--steps",

@@ -22,6 +22,7 @@ struct ExportArguments {
   std::string input;
   std::string output;
   std::string array;
+  std::string series;
   std::optional<std::int64_t> step;
   bool temporal = false;
   std::optional<Axes> axes;
@@ -46,11 +47,14 @@ int run_export(const ExportArguments& arguments) {
         ".vti");
   }
   check_output_file(arguments.output, {arguments.input});
-  const std::vector<double> times = read_volume_header(arguments.input).times;
+  check_series(arguments.series, {arguments.input});
+  VolumeReadOptions read;
+  read.series = arguments.series;
+  const std::vector<double> times = read_volume_header(arguments.input, read).times;
   const std::optional<std::int64_t> first =
       arguments.temporal ? std::optional<std::int64_t>(0) : arguments.step;
-  const Volume volume = read_array(arguments.input, arguments.array, first);
-  ArrayHeader array = VolumeReader(arguments.input, volume.name, first.value_or(0)).array();
+  const Volume volume = read_array(arguments.input, arguments.array, first, read);
+  ArrayHeader array = VolumeReader(arguments.input, volume.name, first.value_or(0), read).array();
   if (!has_vtk_image_name(arguments.output)) array = nifti_array(array, arguments.axes);
   if (array.is_itk_field && itk_components(volume.grid) == 2) {
     fmt::print(stderr, "tetwarp: {}: {}\n", arguments.output, itk_slice_note);
@@ -67,7 +71,8 @@ int run_export(const ExportArguments& arguments) {
   writer.write(0, whole, volume.data.data());
   for (std::size_t step = 1; is_series && step < times.size(); ++step) {
     writer.begin_step(times[step]);
-    const Volume next = read_volume(arguments.input, volume.name, static_cast<std::int64_t>(step));
+    const Volume next =
+        read_volume(arguments.input, volume.name, static_cast<std::int64_t>(step), read);
     writer.write(0, whole, next.data.data());
   }
   writer.finish();
@@ -99,6 +104,7 @@ void add_export_command(CLI::App& app, Run& run) {
   command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");
+  add_series(*command, arguments->series);
   command->add_flag("--temporal", arguments->temporal, "write all steps as one series (4D)")
       ->excludes("--step");
   add_axes(*command, arguments->axes,

@@ -28,6 +28,7 @@ struct MeshArguments {
   std::int64_t surface_triangles = 0;  // 0: as many as there are
   std::string output;
   std::string array;
+  std::string series;
   std::optional<std::int64_t> step;
   LatticeOptions lattice;
   bool quiet = false;
@@ -96,7 +97,10 @@ Surface surface_of(const MeshArguments& arguments, const Volume& volume, const M
 int run_mesh(const MeshArguments& arguments) {
   check_volume(arguments.volume, "usage: tetwarp mesh VOLUME -o MESH");
   check_outputs(arguments, arguments.volume);
-  const Volume volume = read_array(arguments.volume, arguments.array, arguments.step);
+  check_series(arguments.series, {arguments.volume});
+  VolumeReadOptions read;
+  read.series = arguments.series;
+  const Volume volume = read_array(arguments.volume, arguments.array, arguments.step, read);
   Mesh mesh;
   Surface surface;
   try {
@@ -161,6 +165,7 @@ void declare_options(CLI::App& command, MeshArguments& arguments) {
       .add_option("--array", arguments.array,
                   "array to compare with the threshold [active scalars]")
       ->type_name("NAME");
+  add_series(command, arguments.series);
   command.add_option("--step", arguments.step, "step of a volume file with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");

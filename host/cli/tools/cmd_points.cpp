@@ -1,4 +1,4 @@
-/// @file cmd_points.cpp
+///     file cmd_points.cpp
 /// The subcommand points.
 #include <fmt/format.h>
 
@@ -28,6 +28,7 @@ struct PointsArguments {
   std::string mesh_file;
   std::string output;
   std::string like;
+  std::string like_series;
   StepSelection steps;
   MeshReadOptions mesh;
   std::optional<Axes> axes;
@@ -96,7 +97,10 @@ int run_points(const PointsArguments& arguments) {
   MapPointsOptions options = arguments.map;
   if (!arguments.like.empty()) {
     check_volume(arguments.like, "--like takes the grid of a volume");
-    options.grid = read_volume_header(arguments.like).grid;
+    check_series(arguments.like_series, {arguments.like}, "--like-series");
+    VolumeReadOptions read;
+    read.series = arguments.like_series;
+    options.grid = read_volume_header(arguments.like, read).grid;
   }
   const Axes axes = arguments.axes.value_or(Axes::ras);
   const PointFile file(arguments.input, axes);
@@ -185,6 +189,7 @@ void add_points_command(CLI::App& app, Run& run) {
       ->add_option("--like", arguments->like,
                    "volume: cells own points by its rounding, as in a warp onto its grid")
       ->type_name("FILE");
+  add_series(*command, arguments->like_series, "--like-series")->needs("--like");
   add_axes(*command, arguments->axes,
            "axes of files that do not name theirs: points, and meshes in .msh, .vtu and .vtk; lps "
            "is turned to ras and back [ras]");

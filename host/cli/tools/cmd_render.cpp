@@ -26,12 +26,18 @@ struct RenderArguments {
   std::string beside;
   std::string output;
   std::string array;
+  std::string series;
   std::optional<std::int64_t> step;
   RenderOptions render;
   PictureOptions pictures;
   double seconds = 0.1;  ///< per picture of a film
   bool quiet = false;
 
+  VolumeReadOptions read_options() const {
+    VolumeReadOptions options;
+    options.series = series;
+    return options;
+  }
   bool casts() const { return !pictures.cast.empty(); }
   bool is_film() const { return has_extension(output, ".gif"); }
 };
@@ -40,7 +46,8 @@ struct RenderArguments {
 class VolumePictures {
  public:
   explicit VolumePictures(const RenderArguments& arguments) : arguments_(arguments) {
-    if (!arguments.beside.empty()) beside_ = read_array(arguments.beside, arguments.array, {});
+    if (!arguments.beside.empty())
+      beside_ = read_array(arguments.beside, arguments.array, {}, arguments.read_options());
   }
 
   Image draw(const Volume& volume) {
@@ -104,6 +111,7 @@ void check_files(const RenderArguments& arguments) {
                               arguments.volumes.size()));
   }
   check_output_file(arguments.output, inputs);
+  check_series(arguments.series, inputs);
   if (arguments.is_film()) FilmWriter::check_available(arguments.output);
 }
 
@@ -114,11 +122,13 @@ int make_film(const RenderArguments& arguments) {
   std::size_t count = 0;
   std::optional<Image> first;
   for (const std::string& path : arguments.volumes) {
-    const auto steps = static_cast<std::int64_t>(read_volume_header(path).times.size());
+    const auto steps =
+        static_cast<std::int64_t>(read_volume_header(path, arguments.read_options()).times.size());
     const std::int64_t last =
         arguments.step ? *arguments.step + 1 : std::max<std::int64_t>(steps, 1);
     for (std::int64_t step = arguments.step.value_or(0); step < last; ++step, ++count) {
-      const Image image = pictures.draw(read_array(path, arguments.array, step));
+      const Image image =
+          pictures.draw(read_array(path, arguments.array, step, arguments.read_options()));
       if (!first) first = image;
       if (image.width != first->width || image.height != first->height) {
         throw IoError(path, "",
@@ -141,8 +151,8 @@ int run_render(const RenderArguments& arguments) {
   check_files(arguments);
   if (arguments.is_film()) return make_film(arguments);
   VolumePictures pictures(arguments);
-  const Image image =
-      pictures.draw(read_array(arguments.volumes.front(), arguments.array, arguments.step));
+  const Image image = pictures.draw(read_array(arguments.volumes.front(), arguments.array,
+                                               arguments.step, arguments.read_options()));
   write_png(arguments.output, image);
   if (arguments.quiet) return 0;
   fmt::print("{} x {} pixels: {}\n", image.width, image.height, arguments.output);
@@ -179,6 +189,7 @@ void add_render_command(CLI::App& app, Run& run) {
       ->type_name("VOLUME");
   command->add_option("--array", arguments->array, "array to draw [active scalars]")
       ->type_name("NAME");
+  add_series(*command, arguments->series);
   command
       ->add_option("--step", arguments->step,
                    "step of volume files with several steps [0; of a film all]")

@@ -13,19 +13,20 @@ namespace tetwarp::cli {
 
 Volume read_array(const std::string& path,
                   const std::string& array,
-                  std::optional<std::int64_t> step) {
-  const VolumeReader reader(path, array, step.value_or(0));
+                  std::optional<std::int64_t> step,
+                  const VolumeReadOptions& options) {
+  const VolumeReader reader(path, array, step.value_or(0), options);
   const std::string& name = reader.array().name;
   const std::vector<std::string> names = reader.array_names();
   if (array.empty() && names.size() > 1) {
     fmt::print(stderr, "tetwarp: {}: takes array {} of {}; --array names another\n", path, name,
                listed(names));
   }
-  const std::size_t steps = read_volume_header(path).times.size();
+  const std::size_t steps = read_volume_header(path, options).times.size();
   if (!step && steps > 1) {
     fmt::print(stderr, "tetwarp: {}: takes step 0 of {}; --step names another\n", path, steps);
   }
-  return read_volume(path, name, step.value_or(0));
+  return read_volume(path, name, step.value_or(0), options);
 }
 
 }  // namespace tetwarp::cli

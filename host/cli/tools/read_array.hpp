@@ -13,6 +13,7 @@ namespace tetwarp::cli {
 /// the file has several, prints to standard error which one is taken.
 Volume read_array(const std::string& path,
                   const std::string& array,
-                  std::optional<std::int64_t> step);
+                  std::optional<std::int64_t> step,
+                  const VolumeReadOptions& options = {});
 
 }  // namespace tetwarp::cli

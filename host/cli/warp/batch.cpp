@@ -27,6 +27,7 @@
 #include "host/cli/job/job_plan.hpp"
 #include "host/cli/warp/batch_file.hpp"
 #include "host/cli/warp/job_process.hpp"
+#include "host/cli/warp/transform_job.hpp"
 #include "host/cli/warp/warp_job.hpp"
 #include "io/files/finished_file.hpp"
 #include "io/files/memory.hpp"
@@ -58,7 +59,8 @@ std::vector<std::string> files_written(const BatchJob& job) {
   if (!job.error.empty()) return {};
   std::vector<std::string> files;
   try {
-    files = plan_job(job.arguments).outputs();
+    files = names_transform(job.arguments) ? transform_job_files(job.arguments)
+                                           : plan_job(job.arguments).outputs();
   } catch (const std::exception&) {
     files = {job.arguments.output};
   }
@@ -106,6 +108,11 @@ Json files_of_job(const BatchJob& job, int number) {
   return {{"job", number}, {"volumes", job.volumes}, {"mesh", job.mesh}, {"output", job.output}};
 }
 
+JobResult run_by_kind(const WarpArguments& arguments, const JobContext& context) {
+  return names_transform(arguments) ? run_transform_job(arguments, context)
+                                    : run_warp_job(arguments, context);
+}
+
 void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
   const std::string name = name_of_job(number);
   Json report = files_of_job(job, number);
@@ -114,7 +121,7 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
     return;
   }
   try {
-    const JobResult result = run_warp_job(job.arguments, {.label = name, .shows_progress = !quiet});
+    const JobResult result = run_by_kind(job.arguments, {.label = name, .shows_progress = !quiet});
     report.update(Json::parse(report_json(result)));
     if (!result.refusal.empty()) {
       if (!quiet) fmt::print("{}: {}", name, summary(result));
@@ -145,7 +152,7 @@ double planned_memory(const BatchJob& job) {
   arguments.report.clear();
   double most = 0;
   try {
-    const JobResult result = run_warp_job(arguments, {.shows_progress = false});
+    const JobResult result = run_by_kind(arguments, {.shows_progress = false});
     for (const StepPlan& plan : result.plans) most = std::max(most, plan.memory);
   } catch (const Cancelled&) {
     throw;

@@ -73,12 +73,15 @@ class JobReader {
     if (!job.is_object()) throw std::invalid_argument("is not a JSON object");
     Words files;
     Words options;
-    for (const std::string key : {"volume", "mesh"}) {
+    if (job.contains("mesh") && job.contains("transform")) {
+      throw std::invalid_argument("has a 'mesh' and a 'transform'; leave out one");
+    }
+    for (const std::string& key : {std::string("volume"), deformation_key(job)}) {
       if (!job.contains(key)) throw std::invalid_argument("has no '" + key + "'");
       for (const std::string& name : file_names(key, job[key])) files.push_back(located(name));
     }
     for (const auto& [key, value] : job.items()) {
-      if (key == "volume" || key == "mesh") continue;
+      if (key == "volume" || key == deformation_key(job)) continue;
       const Words some = words_of_key(key, value);
       options.insert(options.end(), some.begin(), some.end());
     }
@@ -102,18 +105,25 @@ class JobReader {
       return located_names;
     };
     named.volumes = names("volume");
-    for (const std::string& mesh : names("mesh")) named.mesh = mesh;
+    if (!job.is_object()) return;
+    for (const std::string& mesh : names(deformation_key(job).c_str())) named.mesh = mesh;
     for (const std::string& output : names("output")) named.output = output;
   }
 
  private:
+  /// The key of the file that deforms the volume.
+  static std::string deformation_key(const Json& job) {
+    return job.contains("transform") ? "transform" : "mesh";
+  }
+
   std::string located(const std::string& path) const { return (folder_ / path).string(); }
 
   Words words_of_key(const std::string& key, const Json& value) const {
     const CLI::Option* option = defaults_.get_option_no_throw("--" + key);
     if (option == nullptr || is_one_of(key, batch_options)) {
-      throw std::invalid_argument("unknown key '" + key +
-                                  "'; keys are volume, mesh and the options of tetwarp warp");
+      throw std::invalid_argument(
+          "unknown key '" + key +
+          "'; keys are volume, mesh, transform and the options of tetwarp warp");
     }
     if (option->get_items_expected_max() == 0) {
       if (!value.is_boolean()) {
@@ -153,10 +163,6 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
     try {
       parsed.words = reader.words_of(job);
       parsed.arguments = parse_warp_arguments(parsed.words);
-      if (parsed.arguments.fsl) {
-        throw std::invalid_argument(
-            "--fsl is for warps by a field, a job is one by a mesh; leave it out");
-      }
     } catch (const CLI::ParseError& error) {
       parsed.error = name + one_line(error.what());
     } catch (const std::invalid_argument& error) {

@@ -114,7 +114,8 @@ std::vector<Json> csv_jobs(const std::string& path, const std::string& text) {
 }
 
 /// Keys whose '*' becomes what the '*' of `volume` stands for.
-constexpr const char* path_keys[] = {"mesh", "output", "report", "rest", "grid", "like"};
+constexpr const char* path_keys[] = {"mesh", "transform", "output", "report",
+                                     "rest", "grid",      "like"};
 
 /// One job for each file that the pattern in `volume` matches; others stay as they are.
 std::vector<Json> expanded(const std::string& list, const Json& job) {

@@ -22,9 +22,11 @@ int device_count() {
   return count;
 }
 
-int run_warp(WarpArguments arguments, const CLI::App& command) {
+int run_warp(WarpArguments arguments) {
   if (names_transform(arguments)) {
-    run_transform_job(arguments, command);
+    const JobResult result = run_transform_job(arguments, {.shows_progress = !arguments.quiet});
+    if (!arguments.quiet) fmt::print("{}", transform_summary(arguments, result));
+    if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
     return 0;
   }
   Ranks ranks = Ranks::start();
@@ -69,8 +71,7 @@ void add_warp_command(CLI::App& app, Run& run) {
                                  "with --provenance runs without mpirun; leave out one of the two");
     }
     run = [arguments, command] {
-      return arguments->batch.empty() ? run_warp(*arguments, *command)
-                                      : run_batch(*arguments, *command);
+      return arguments->batch.empty() ? run_warp(*arguments) : run_batch(*arguments, *command);
     };
   });
 }

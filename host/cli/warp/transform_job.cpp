@@ -13,9 +13,12 @@
 #include <tetwarp/io.hpp>
 #include <tetwarp/resample.hpp>
 #include <tetwarp/transform_file.hpp>
+#include <tetwarp/version.hpp>
 #include <variant>
 #include <vector>
 
+#include "host/base/parallel.hpp"
+#include "host/base/stopwatch.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
@@ -23,23 +26,29 @@
 #include "host/cli/job/array_checks.hpp"
 #include "host/cli/job/output_grid.hpp"
 #include "host/cli/job/output_writer.hpp"
+#include "host/cli/job/provenance.hpp"
 #include "host/cli/job/warnings.hpp"
+#include "host/cli/warp/warp_job.hpp"
+#include "io/files/finished_file.hpp"
+#include "io/files/memory.hpp"
 
 namespace tetwarp::cli {
 namespace {
 const std::string order = "the order is: tetwarp warp IMAGE FIELD -o OUT";
 
 /// Throws std::invalid_argument for options that have no meaning without a mesh.
-void check_options(const WarpArguments& arguments, const CLI::App& command) {
-  const std::set<std::string> known{"--output",    "--array",   "--source-step", "--axes",
-                                    "--fsl",       "--grid",    "--like",        "--dims",
-                                    "--origin",    "--spacing", "--direction",   "--filter",
-                                    "--overshoot", "--outside", "--background",  "--compress",
-                                    "--threads",   "--quiet",   "--backend",     "--series"};
-  for (const CLI::Option* const option : command.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || name == "FILES" || known.contains(name)) continue;
-    throw std::invalid_argument(name + " is for warps by a mesh; leave it out");
+void check_options(const WarpArguments& arguments) {
+  const std::set<std::string> known{
+      "output",     "array",    "source-step", "axes",       "fsl",     "grid",      "like",
+      "dims",       "origin",   "spacing",     "direction",  "filter",  "overshoot", "outside",
+      "background", "compress", "threads",     "quiet",      "backend", "series",    "like-series",
+      "label-rule", "report",   "dry-run",     "provenance", "resume"};
+  for (const auto& [name, values] : arguments.given) {
+    if (known.contains(name)) continue;
+    throw std::invalid_argument("--" + name + " is for warps by a mesh; leave it out");
+  }
+  if (arguments.resume && !arguments.provenance) {
+    throw std::invalid_argument("--resume of a warp by a transform needs --provenance; add it");
   }
   if (arguments.files.size() != 2) {
     throw std::invalid_argument("a transform resamples one image at a time; " + order);
@@ -56,14 +65,20 @@ void check_options(const WarpArguments& arguments, const CLI::App& command) {
   }
 }
 
-ResampleOptions resample_options(const WarpArguments& arguments, const CLI::App& command) {
+bool is_given(const WarpArguments& arguments, const std::string& option) {
+  return std::ranges::any_of(arguments.given, [&](const auto& one) { return one.first == option; });
+}
+
+ResampleOptions resample_options(const WarpArguments& arguments) {
   ResampleOptions options;
   options.filter = arguments.warp.filter;
+  options.label_rule = arguments.warp.label_rule;
+  options.label_gaussian = arguments.warp.label_gaussian;
   options.overshoot = arguments.warp.overshoot;
   options.background = arguments.warp.background;
   options.threads = arguments.warp.threads;
   options.only_in_field =
-      command.count("--outside") > 0 && arguments.warp.outside == Outside::background;
+      is_given(arguments, "outside") && arguments.warp.outside == Outside::background;
   return options;
 }
 
@@ -124,6 +139,82 @@ void write_step(const WarpArguments& arguments,
   }
   bar.finish_step();
 }
+
+/// What a job reads, all arguments checked.
+Source checked_source(const WarpArguments& arguments) {
+  check_options(arguments);
+  const std::string& path = arguments.files.front();
+  check_volume(path, order);
+  check_series(arguments.series, {path});
+  check_volume_name(arguments.output);
+  return open_source(arguments);
+}
+
+/// Memory for one array of a step at a time [byte], with what the process holds now.
+double planned_memory(const Source& source, const ResampleOptions& options) {
+  const double spline = options.filter == Filter::bspline ? 16 : 0;  // bytes of a sample, at most
+  const auto from = static_cast<double>(source.header.grid.voxel_count());
+  const auto to = static_cast<double>(options.output_grid->voxel_count());
+  double most = 0;
+  for (const ArrayHeader& array : source.arrays) {
+    const auto bytes = static_cast<double>(size_of(array.type));
+    most = std::max(most, array.components * (from * (bytes + spline) + to * bytes));
+  }
+  return resident_memory() + most;
+}
+
+/// Prints what the source loses.
+void print_left_out(const std::string& path, const VolumeHeader& header) {
+  print_notes(path, header.notes);
+  std::vector<std::string> lost = header.not_read;
+  lost.insert(lost.end(), header.left_out.begin(), header.left_out.end());
+  if (!lost.empty()) {
+    fmt::print(stderr, "tetwarp: {}: left out: {}\n", path, one_line(listed(lost)));
+  }
+}
+
+/// Resamples all steps, or plans them with --dry-run.
+void resample_source(const WarpArguments& arguments,
+                     const Source& source,
+                     ResampleOptions options,
+                     const JobContext& context,
+                     JobResult& result) {
+  const std::string& path = arguments.files.front();
+  const Grid& grid = *options.output_grid;
+  const TransformFile file = read_transform(arguments.files.back(), arguments.transform_options());
+  if (file.ends_with_field && !is_given(arguments, "outside")) options.only_in_field = true;
+  const double memory = planned_memory(source, options);
+  const double available = resident_memory() + available_memory();
+  if (memory > available) {
+    result.refusal = fmt::format("{}: takes {} of memory, {} are available", path,
+                                 bytes_text(memory), bytes_text(available));
+  }
+  if (!result.refusal.empty() && !arguments.dry_run) throw std::runtime_error(result.refusal);
+  if (arguments.dry_run) {
+    for (const std::int64_t step : source.steps) {
+      result.plans.push_back({.volume = path, .step = step, .dims = grid.dims, .memory = memory});
+    }
+    return;
+  }
+  ProgressBar bar(context.shows_progress, context.label, source.steps.size());
+  OutputWriter writer(arguments.output, grid, source.arrays,
+                      {.compress = arguments.compress,
+                       .background = arguments.warp.background,
+                       .scalars = source.header.active},
+                      source.is_series, source.arrays.size(), ChunkShape::rows);
+  for (const std::int64_t step : source.steps) {
+    if (source.is_series) {
+      writer.begin_step(source.header.times[static_cast<std::size_t>(step)]);
+    }
+    write_step(arguments, source, step, file.transform, options, writer, bar);
+  }
+  writer.finish();
+  result.written = 1;
+  print_left_out(path, source.header);
+  result.steps = fmt::format(
+      "{} x {} x {} voxels{} by {}", grid.dims[0], grid.dims[1], grid.dims[2],
+      source.is_series ? fmt::format(", {} steps", source.steps.size()) : "", file.convention);
+}
 }  // namespace
 
 bool names_transform(const WarpArguments& arguments) {
@@ -136,47 +227,46 @@ bool names_transform(const WarpArguments& arguments) {
   return is_transform_file(last, arguments.transform_options());
 }
 
-void run_transform_job(const WarpArguments& arguments, const CLI::App& command) {
-  check_options(arguments, command);
-  const std::string& path = arguments.files.front();
-  check_volume(path, order);
-  check_series(arguments.series, {path});
-  check_volume_name(arguments.output);
+std::vector<std::string> transform_job_files(const WarpArguments& arguments) {
+  return files_of_output(arguments.output, open_source(arguments).arrays);
+}
+
+JobResult run_transform_job(const WarpArguments& arguments, const JobContext& context) {
+  const InterruptFlag interrupts_set_a_flag;
+  const Stopwatch watch;
+  const Source source = checked_source(arguments);
+  ResampleOptions options = resample_options(arguments);
+  options.output_grid = resolve_grid(arguments.grid, source.header.grid, Mesh{}, {});
+  const std::vector<std::string> files = files_of_output(arguments.output, source.arrays);
   std::vector<std::string> inputs = arguments.files;
   if (arguments.grid.base != "same") inputs.push_back(arguments.grid.base);
-  const Source source = open_source(arguments);
-  ResampleOptions options = resample_options(arguments, command);
-  options.output_grid = resolve_grid(arguments.grid, source.header.grid, Mesh{}, {});
-  for (const std::string& file : files_of_output(arguments.output, source.arrays)) {
-    check_output_file(file, inputs);
+  for (const std::string& file : files) check_output_file(file, inputs);
+  JobResult result;
+  result.outputs = {arguments.output};
+  result.report.version = TETWARP_VERSION;
+  result.report.backend = Backend::cpu;
+  result.report.backend_reason = "transforms run on cpu";
+  result.report.threads = thread_count(arguments.warp.threads);
+  const bool keeps = arguments.resume && !arguments.dry_run &&
+                     provenance_state(arguments, files) == ProvenanceState::agrees;
+  if (keeps) {
+    result.skipped = 1;
+  } else {
+    resample_source(arguments, source, options, context, result);
   }
-  const TransformFile file = read_transform(arguments.files.back(), arguments.transform_options());
-  if (file.ends_with_field && command.count("--outside") == 0) options.only_in_field = true;
-  const InterruptFlag flag;
-  ProgressBar bar(!arguments.quiet, "warp", source.steps.size());
-  OutputWriter writer(arguments.output, *options.output_grid, source.arrays,
-                      {.compress = arguments.compress,
-                       .background = arguments.warp.background,
-                       .scalars = source.header.active},
-                      source.is_series, source.arrays.size(), ChunkShape::rows);
-  for (const std::int64_t step : source.steps) {
-    if (source.is_series) {
-      writer.begin_step(source.header.times[static_cast<std::size_t>(step)]);
-    }
-    write_step(arguments, source, step, file.transform, options, writer, bar);
+  result.report.timings.total = watch.seconds();
+  if (arguments.provenance && !keeps && !arguments.dry_run) {
+    write_provenance(arguments, files, result);
   }
-  writer.finish();
-  print_notes(path, source.header.notes);
-  std::vector<std::string> lost = source.header.not_read;
-  lost.insert(lost.end(), source.header.left_out.begin(), source.header.left_out.end());
-  if (!lost.empty()) {
-    fmt::print(stderr, "tetwarp: {}: left out: {}\n", path, one_line(listed(lost)));
+  if (!arguments.report.empty()) {
+    write_finished_file(arguments.report, report_json(result) + "\n");
   }
-  if (arguments.quiet) return;
-  const Grid& grid = *options.output_grid;
-  fmt::print("{} x {} x {} voxels{} by {}: {}\n", grid.dims[0], grid.dims[1], grid.dims[2],
-             source.is_series ? fmt::format(", {} steps", source.steps.size()) : "",
-             file.convention, arguments.output);
+  return result;
+}
+
+std::string transform_summary(const WarpArguments& arguments, const JobResult& result) {
+  if (!result.plans.empty() || result.skipped > 0) return summary(result);
+  return fmt::format("{}: {}\n", result.steps, arguments.output);
 }
 
 }  // namespace tetwarp::cli

@@ -1,8 +1,10 @@
 /// @file transform_job.hpp
 /// `tetwarp warp` by a displacement field or an affine transform instead of a mesh.
 #pragma once
-#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
+#include "host/cli/job/job_result.hpp"
 #include "host/cli/job/warp_arguments.hpp"
 
 namespace tetwarp::cli {
@@ -10,9 +12,14 @@ namespace tetwarp::cli {
 /// True when the last file is a transform.
 bool names_transform(const WarpArguments& arguments);
 
-/// Resamples a volume, all steps of a series, in memory.
-/// @param command  the parsed options: those that need a mesh are refused
+/// The files that run_transform_job() writes. Throws IoError.
+std::vector<std::string> transform_job_files(const WarpArguments& arguments);
+
+/// Resamples a volume, all steps of a series, in memory. Options that need a mesh are refused.
 /// Throws std::invalid_argument, IoError, Cancelled.
-void run_transform_job(const WarpArguments& arguments, const CLI::App& command);
+JobResult run_transform_job(const WarpArguments& arguments, const JobContext& context);
+
+/// The lines to print after a job that ran.
+std::string transform_summary(const WarpArguments& arguments, const JobResult& result);
 
 }  // namespace tetwarp::cli

@@ -78,7 +78,7 @@ std::string steps_text(const WarpArguments& arguments, const JobPlan& plan) {
 /// these contradicts, --resume is turned off: the job is computed again.
 bool keeps_outputs(const JobPlan& plan, WarpArguments& arguments, JobResult& result) {
   if (!arguments.resume || !arguments.provenance || arguments.dry_run) return false;
-  const ProvenanceState state = provenance_state(arguments, plan);
+  const ProvenanceState state = provenance_state(arguments, plan.outputs());
   arguments.resume = state != ProvenanceState::contradicts;
   if (state != ProvenanceState::agrees) return false;
   for (const VolumePlan& volume : plan.volumes) result.skipped += std::ssize(volume.outputs);
@@ -159,7 +159,11 @@ JobResult run_warp_job(const WarpArguments& given, const JobContext& context) {
                      result.report.steps));
   result.report.timings.total = watch.seconds();
   if (arguments.provenance && !arguments.dry_run && ranks.is_root()) {
-    write_provenance(arguments, plan, result);
+    std::vector<std::string> files;
+    for (const VolumePlan& volume : plan.volumes) {
+      files.insert(files.end(), volume.files.begin(), volume.files.end());
+    }
+    write_provenance(arguments, files, result);
   }
   if (!arguments.report.empty() && ranks.is_root()) {
     write_finished_file(arguments.report, report_json(result) + "\n");

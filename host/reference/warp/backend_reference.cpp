@@ -54,6 +54,14 @@ class ReferenceBackend : public WarpBackend {
         if (plan_.options.intensity != Intensity::value && !plan_.options.source_window) {
           conserve(s, rest, deformed, out, report);
         }
+        if (plan_.options.label_rule == LabelRule::volume) {
+          const T* labels = static_cast<const T*>(plan_.sources[s].data);
+          const std::vector<double> chosen =
+              elected([&](std::int64_t v) { return static_cast<double>(labels[v]); },
+                      plan_.sources[s].grid.dims, moved_tets(rest, deformed), plan_.region,
+                      static_cast<double>(stored<T>(plan_.options.background)));
+          std::ranges::transform(chosen, out, [](double label) { return static_cast<T>(label); });
+        }
       });
     }
     for (std::size_t v = 0; v < voxels; ++v) {
@@ -100,16 +108,21 @@ class ReferenceBackend : public WarpBackend {
     });
   }
 
-  /// Totals of source s and its output; with conservative intensity also the output itself.
-  template <class T>
-  void conserve(
-      std::size_t s, const double* rest, const double* deformed, T* out, StepReport& report) const {
+  std::vector<MovedTet> moved_tets(const double* rest, const double* deformed) const {
     std::vector<MovedTet> tets;
     tets.reserve(plan_.mesh.tets.size());
     for (std::int32_t t = 0; t < std::ssize(plan_.mesh.tets); ++t) {
       tets.push_back({owners_.corners_of(t, rest, owners_.source),
                       owners_.corners_of(t, deformed, owners_.output)});
     }
+    return tets;
+  }
+
+  /// Totals of source s and its output; with conservative intensity also the output itself.
+  template <class T>
+  void conserve(
+      std::size_t s, const double* rest, const double* deformed, T* out, StepReport& report) const {
+    const std::vector<MovedTet> tets = moved_tets(rest, deformed);
     const double source_voxel = std::abs(owners_.source.to_world.determinant());
     const double output_voxel = std::abs(owners_.output.to_world.determinant());
     if (plan_.options.intensity == Intensity::conservative) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace tetwarp::reference {
@@ -125,6 +126,41 @@ void for_overlaps(const Corners& rest,
       visit(voxel, origin, volume_of(parts));
     });
   });
+}
+
+std::vector<double> elected(const std::function<double(std::int64_t)>& label_of,
+                            const Dims& source,
+                            const std::vector<MovedTet>& tets,
+                            const Region& region,
+                            double background) {
+  Dims dims;
+  for (std::size_t axis = 0; axis < 3; ++axis) dims[axis] = region.end[axis] - region.begin[axis];
+  std::vector<std::map<double, double>> shares(static_cast<std::size_t>(region.voxel_count()));
+  for (auto [rest, now] : tets) {
+    const auto at_rest = static_cast<double>(signed_volume(rest));
+    const auto deformed = static_cast<double>(signed_volume(now));
+    if (at_rest == 0 || deformed == 0) continue;
+    for (Quanta& node : now) {
+      for (std::size_t axis = 0; axis < 3; ++axis) node[axis] -= region.begin[axis] * one_voxel_int;
+    }
+    for_overlaps(rest, now, source, dims,
+                 [&](std::int64_t voxel, std::int64_t from, double volume) {
+                   shares[static_cast<std::size_t>(voxel)][label_of(from)] +=
+                       volume * std::abs(deformed / at_rest);
+                 });
+  }
+  std::vector<double> labels(shares.size(), background);
+  for (std::size_t v = 0; v < shares.size(); ++v) {
+    double covered = 0, most = 0;
+    for (const auto& [label, share] : shares[v]) covered += share;
+    shares[v][background] += std::max(0.0, 1 - covered);
+    for (const auto& [label, share] : shares[v]) {
+      if (share <= most + 0x1p-16) continue;
+      most = share;
+      labels[v] = label;
+    }
+  }
+  return labels;
 }
 
 }  // namespace tetwarp::reference

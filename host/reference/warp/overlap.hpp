@@ -110,6 +110,15 @@ std::vector<StoringChange> carry(const VolumeView& source,
   return changes;
 }
 
+/// The label with the largest volume in the box of every voxel of a region: of those whose shares
+/// of the box exceed no lower one by more than 2^-16 the lowest. What no label fills is background.
+/// @param label_of  label of a source voxel
+std::vector<double> elected(const std::function<double(std::int64_t)>& label_of,
+                            const Dims& source,
+                            const std::vector<MovedTet>& tets,
+                            const Region& region,
+                            double background);
+
 /// Integral of a source over the tetrahedra at rest, component by component [source voxel].
 template <class T>
 std::vector<double> total_held(const VolumeView& source, const std::vector<MovedTet>& tets) {

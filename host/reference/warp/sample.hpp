@@ -66,6 +66,8 @@ class Sampler {
         held_(held),
         components_(source.components),
         filter_(options.filter),
+        rule_(options.label_rule),
+        gaussian_(options.label_gaussian),
         background_(stored<T>(options.background)),
         low_(static_cast<std::size_t>(components_), -INFINITY),
         high_(static_cast<std::size_t>(components_), INFINITY) {
@@ -106,6 +108,10 @@ class Sampler {
         return;
       }
       is_center = is_center && x(axis) == std::floor(x(axis));
+    }
+    if (rule_ == LabelRule::gaussian) {
+      out[0] = gaussian_label_at(x);
+      return;
     }
     for (int c = 0; c < components_; ++c) {
       if (is_center || filter_ == Filter::nearest) {
@@ -197,11 +203,45 @@ class Sampler {
     return std::ranges::max_element(shares, smaller)->first;
   }
 
+  /// The label with the largest integral of a Gaussian over its voxels within the cutoff.
+  T gaussian_label_at(const Eigen::Vector3d& x) const {
+    const double reach = gaussian_.sigma * gaussian_.cutoff;
+    const auto is_near = [&](int axis, double voxel) {
+      return std::abs(voxel - x(axis)) < reach + 0.5;
+    };
+    const auto weight = [&](int axis, double voxel) {
+      const double scale = gaussian_.sigma * std::sqrt(2.0);
+      return std::erf((voxel + 0.5 - x(axis)) / scale) - std::erf((voxel - 0.5 - x(axis)) / scale);
+    };
+    std::map<double, double> sums;
+    for (double k = 0; k < static_cast<double>(n_[2]); ++k) {
+      if (!is_near(2, k)) continue;
+      for (double j = 0; j < static_cast<double>(n_[1]); ++j) {
+        if (!is_near(1, j)) continue;
+        for (double i = 0; i < static_cast<double>(n_[0]); ++i) {
+          if (!is_near(0, i)) continue;
+          sums[static_cast<double>(data_[offset_of({i, j, k})])] +=
+              weight(0, i) * weight(1, j) * weight(2, k);
+        }
+      }
+    }
+    T winner = background_;
+    double most = 0;
+    for (const auto& [label, sum] : sums) {
+      if (sum <= most + 8 * 0x1p-40) continue;
+      most = sum;
+      winner = static_cast<T>(label);
+    }
+    return winner;
+  }
+
   const T* data_;
   std::array<std::int64_t, 3> n_;
   Region held_;  ///< voxels of the source grid that `data_` holds
   int components_;
   Filter filter_;
+  LabelRule rule_;
+  LabelGaussian gaussian_;
   T background_;
   std::vector<double> coefficients_;  ///< of splines; empty for other filters
   std::vector<double> low_, high_;    ///< limits of values, per component

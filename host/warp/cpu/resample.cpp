@@ -13,8 +13,10 @@
 #include "host/base/pixel_dispatch.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/exec/exec_cpu.hpp"
+#include "host/warp/box_sums.hpp"
 #include "host/warp/cpu/row_resample_cpu.hpp"
 #include "host/warp/cpu/transform_links.hpp"
+#include "host/warp/label_stages.hpp"
 #include "host/warp/sources.hpp"
 #include "host/warp/transform_checks.hpp"
 #include "kernels/warp/row_resample.hpp"
@@ -98,13 +100,36 @@ WarpPlan make_plan(std::span<const VolumeView> sources, const ResampleOptions& o
     if (source.memory != Memory::host) throw std::invalid_argument("source: not in host memory");
   }
   plan.options.filter = options.filter;
+  plan.options.label_rule = options.label_rule;
+  plan.options.label_gaussian = options.label_gaussian;
   plan.options.overshoot = options.overshoot;
+  if (options.label_rule == LabelRule::volume) {
+    throw std::invalid_argument(
+        "label rule: volume is for warps by a mesh; use linear or gaussian");
+  }
   check_transforms(plan.sources, plan.options);
   const Grid& grid = sources.front().grid;
   plan.source_region = {{0, 0, 0}, grid.dims};
   plan.output_grid = options.output_grid.value_or(grid);
   check_grid(plan.output_grid, "output grid");
   return plan;
+}
+/// Calls work(begin, end) for parts of [0, count) on host threads.
+/// @param size  what is computed between two reports
+template <class Work>
+void in_parts(int threads,
+              std::int64_t count,
+              std::int64_t size,
+              const ProgressPart& progress,
+              const Work& work) {
+  for (std::int64_t begin = 0; begin < count; begin += size) {
+    progress.report(static_cast<double>(begin) / static_cast<double>(count));
+    const std::int64_t part = std::min(size, count - begin);
+    const std::int64_t tasks = std::min<std::int64_t>(part, 4 * threads);
+    parallel_tasks(threads, tasks, [&](std::int64_t task) {
+      work(begin + part * task / tasks, begin + part * (task + 1) / tasks);
+    });
+  }
 }
 }  // namespace
 
@@ -136,8 +161,24 @@ void resample(std::span<const VolumeView> sources,
   constexpr std::int64_t part_voxels = 1 << 22;  // between two reports of progress
   const std::int64_t part =
       std::max<std::int64_t>(1, part_voxels / (cell_edge * cell_edge * output.dims[0]));
+  const double share = 1 / static_cast<double>(sources.size());
   for (std::size_t s = 0; s < sources.size(); ++s) {
+    const ProgressPart of_source = {progress, static_cast<double>(s) * share, share};
     with_pixel_type(sources[s].type, [&]<class T>(T) {
+      if (takes_gaussian(plan.options)) {
+        const double background = static_cast<double>(rounded_to<T>(options.background));
+        const RowGaussianOp op = {
+            gaussian_labels(sources[s].grid, number_view(data.view<T>(s).data),
+                            options.label_gaussian, background),
+            map,
+            {output.dims[0], output.dims[1], output.dims[2]},
+            number_view(static_cast<T*>(outputs[s]))};
+        in_parts(threads, output.dims[1] * output.dims[2], cell_edge * cell_edge * part, of_source,
+                 [&](std::int64_t begin, std::int64_t end) {
+                   for (std::int64_t row = begin; row < end; ++row) op(row);
+                 });
+        return;
+      }
       RowResampleOp<T> op{};
       op.job.source = data.view<T>(s);
       op.job.filter = options.filter;
@@ -145,17 +186,9 @@ void resample(std::span<const VolumeView> sources,
       op.job.volume = static_cast<T*>(outputs[s]);
       op.map = map;
       std::copy_n(output.dims.begin(), 3, op.dims);
-      for (std::int64_t begin = 0; begin < lines; begin += part) {
-        const double done = static_cast<double>(begin) / static_cast<double>(lines);
-        const auto share = static_cast<double>(sources.size());
-        if (progress && !progress((static_cast<double>(s) + done) / share)) throw Cancelled();
-        const std::int64_t count = std::min(part, lines - begin);
-        const std::int64_t tasks = std::min<std::int64_t>(count, 4 * threads);
-        parallel_tasks(threads, tasks, [&](std::int64_t task) {
-          resample_lines(sources[s].type, &op, begin + count * task / tasks,
-                         begin + count * (task + 1) / tasks);
-        });
-      }
+      in_parts(threads, lines, part, of_source, [&](std::int64_t begin, std::int64_t end) {
+        resample_lines(sources[s].type, &op, begin, end);
+      });
     });
   }
   if (progress && !progress(1)) throw Cancelled();

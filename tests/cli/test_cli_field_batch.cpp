@@ -1,0 +1,93 @@
+/// @file test_cli_field_batch.cpp
+/// --batch with warps by displacement fields.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/files/sha256.hpp"
+#include "tests/support/cli_scene.hpp"
+
+namespace tetwarp::test {
+namespace {
+using Names = std::vector<std::string>;
+
+/// A scene with a displacement field, and a folder for batch files.
+class FieldBatch : public testing::Test {
+ protected:
+  FieldBatch() {
+    fs::create_directory(scene / "jobs");
+    made({"compose", "mesh.vtkhdf", "-o", "field.vtkhdf", "--like", "volume.vtkhdf", "--steps",
+          "3"});
+  }
+
+  CommandResult made(const Names& words) const {
+    CommandResult result = run_command(scene, words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result;
+  }
+  bool exists(const std::string& name) const { return fs::exists(scene / name); }
+
+  Scene scene;
+};
+
+/// One after the other and beside each other, a warp by a mesh among them; with --resume those that
+/// are as their files tell are skipped.
+TEST_F(FieldBatch, RunsBesideWarpsByAMesh) {
+  made({"warp", "volume.vtkhdf", "field.vtkhdf", "-o", "alone.nii", "--filter", "cubic"});
+  const std::string list =
+      "volume,mesh,transform,output,filter,steps\n"
+      "volume.vtkhdf,,field.vtkhdf,one.nii,cubic,\n"
+      "volume.vtkhdf,mesh.vtkhdf,,two.nii,,3\n"
+      "volume.vtkhdf,field.vtkhdf,,three.nii,cubic,\n";
+  write_text(scene / "jobs.csv", list);
+  const std::string alone = sha256_of_file(scene / "alone.nii");
+  for (const char* jobs : {"1", "2"}) {
+    made({"warp", "--batch", "jobs.csv", "--jobs", jobs, "--provenance", "--report", "all.json"});
+    EXPECT_EQ(sha256_of_file(scene / "one.nii"), alone);
+    EXPECT_EQ(sha256_of_file(scene / "three.nii"), alone);
+    EXPECT_TRUE(exists("two.nii"));
+    const auto report = nlohmann::json::parse(text_of(scene / "all.json"));
+    EXPECT_EQ(report["jobs_done"], 3);
+    const auto inputs = nlohmann::json::parse(text_of(scene / "one.nii.json"))["inputs"];
+    EXPECT_EQ(inputs[1]["role"], "transform");
+    if (*jobs == '1') {
+      for (const char* name : {"one.nii", "two.nii", "three.nii"}) fs::remove(scene / name);
+    }
+  }
+  fs::remove(scene / "three.nii");
+  made({"warp", "--batch", "jobs.csv", "--jobs", "2", "--provenance", "--resume", "--report",
+        "all.json"});
+  const auto report = nlohmann::json::parse(text_of(scene / "all.json"));
+  EXPECT_EQ(report["jobs_done"], 1);
+  EXPECT_EQ(report["jobs_skipped"], 2);
+  EXPECT_EQ(sha256_of_file(scene / "three.nii"), alone);
+}
+
+TEST_F(FieldBatch, PlansAndRefusesJobs) {
+  const auto batch = [&](const Names& more) {
+    std::string jobs;
+    for (const std::string& one : more) {
+      jobs += (jobs.empty() ? "" : ",") + std::string(R"({"volume": "../volume.vtkhdf", )") +
+              R"("transform": "../field.vtkhdf", "output": "a.nii")" + one + "}";
+    }
+    write_text(scene / "jobs/jobs.json", "{\"jobs\": [" + jobs + "]}");
+    return run_command(scene, {"warp", "--batch", "jobs/jobs.json"});
+  };
+  const CommandResult plan = batch({R"(, "dry-run": true)"});
+  EXPECT_EQ(plan.exit_code, 0) << plan.err;
+  EXPECT_NE(plan.out.find("of memory"), std::string::npos) << plan.out;
+  EXPECT_FALSE(exists("jobs/a.nii"));
+  for (const auto& [more, line] :
+       {std::pair{R"(, "mesh": "../mesh.vtkhdf")", "has a 'mesh' and a 'transform'; leave out one"},
+        {R"(, "temporal": true)", "--temporal is for warps by a mesh; leave it out"},
+        {R"(, "resume": true)", "--resume of a warp by a transform needs --provenance; add it"}}) {
+    const CommandResult result = batch({more});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
+  }
+  EXPECT_FALSE(exists("jobs/a.nii"));
+}
+}  // namespace
+}  // namespace tetwarp::test
