@@ -332,11 +332,12 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks camera certify choices contact contact_adhesion contact_arrays
-  contact_problem contact_tracker error make map_points mesh names page_lock report resample scene
-  scene_parts simulate tetwarp version volume warp warp_operator)
+set(tetwarp_public_headers backend blocks camera cast certify choices contact contact_adhesion
+  contact_analysis contact_arrays contact_problem contact_tracker error loft make map_points mesh names
+  page_lock report resample scene scene_parts simulate surface tetwarp version volume warp warp_operator)
 if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers contact_io io mesh_import point_file scene_io transform_file)
+  list(APPEND tetwarp_public_headers axes contact_io film io mesh_array mesh_import nifti point_file
+    scene_io surface_reader transfer_file transform_file)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
   configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)

@@ -94,7 +94,7 @@ find_package(SDL2 QUIET)
 find_path(TETWARP_SPNAV_INCLUDE spnav.h)
 find_library(TETWARP_SPNAV_LIBRARY spnav)
 set(tetwarp_device_sources gamepad_nosdl.cpp space_mouse_nospnav.cpp)
-if(SDL2_FOUND)
+if(TARGET SDL2::SDL2)  # some packages have none
   list(TRANSFORM tetwarp_device_sources REPLACE "nosdl" "sdl")
   target_link_libraries(tetwarp_view_devices PRIVATE SDL2::SDL2)
 endif()
@@ -110,9 +110,9 @@ message(STATUS "tetwarp: devices of tetwarp view: ${tetwarp_device_sources}")
 
 add_executable(tetwarp_view)
 tetwarp_sources(tetwarp_view host/view/window
-  curve_panel.cpp cut_plane.cpp device_hand.cpp mouse_style.cpp overlay_text.cpp scene_actors.cpp ${tetwarp_screen_sources} surface_actor.cpp
-  value_legend.cpp view_window.cpp volume_actors.cpp window_film.cpp window_picture.cpp
-  window_texts.cpp
+  curve_panel.cpp cut_plane.cpp device_hand.cpp mouse_style.cpp overlay_text.cpp scene_actors.cpp
+  ${tetwarp_screen_sources} surface_actor.cpp value_legend.cpp view_window.cpp volume_actors.cpp
+  window_film.cpp window_picture.cpp window_texts.cpp
   ALONE main.cpp)
 set_target_properties(tetwarp_view PROPERTIES
   OUTPUT_NAME tetwarp-view UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)

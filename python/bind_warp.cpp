@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/warp.hpp>
@@ -24,6 +25,13 @@
 
 namespace tetwarp::python {
 namespace {
+/// Whether arrays in C order share memory.
+bool overlap(const auto& one, const auto& other) {
+  const auto* const first = static_cast<const std::byte*>(one.data());
+  const auto* const second = static_cast<const std::byte*>(other.data());
+  return first < second + other.nbytes() && second < first + one.nbytes();
+}
+
 /// A Warper and the arrays of its sources, which it reads in place.
 class ArrayWarper {
  public:
@@ -45,11 +53,8 @@ class ArrayWarper {
   const Warper& warper() const { return warper_; }
 
   bool shares_memory(const AnyOut& out) const {
-    const auto* const begin = static_cast<const std::byte*>(out.data());
-    return std::ranges::any_of(sources_, [&](const AnySamples& source) {
-      const auto* const data = static_cast<const std::byte*>(source.data());
-      return data < begin + out.nbytes() && begin < data + source.nbytes();
-    });
+    return std::ranges::any_of(sources_,
+                               [&](const AnySamples& source) { return overlap(source, out); });
   }
 
  private:
@@ -120,11 +125,14 @@ nb::dict run_step(ArrayWarper& warper,
                   nb::object progress) {
   std::vector<void*> samples;
   samples.reserve(volumes.size());
-  for (const AnyOut& volume : volumes) {
-    if (warper.shares_memory(volume)) {
-      throw std::invalid_argument("out: shares memory with a source");
+  for (std::size_t n = 0; n < volumes.size(); ++n) {
+    const std::span earlier = std::span(volumes).first(n);
+    if (warper.shares_memory(volumes[n]) ||
+        std::ranges::any_of(earlier, [&](const AnyOut& out) { return overlap(out, volumes[n]); })) {
+      const std::string name = volumes.size() == 1 ? "out" : "out[" + std::to_string(n) + "]";
+      throw std::invalid_argument(name + ": shares memory with a source or another output");
     }
-    samples.push_back(volume.data());
+    samples.push_back(volumes[n].data());
   }
   const PositionsView positions(deformed.data(), static_cast<std::int64_t>(deformed.shape(0)),
                                 memory_of(deformed));

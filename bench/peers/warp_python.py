@@ -9,9 +9,10 @@
 A PEER needs its own package only; each case runs in a process of its own, under Linux. Seconds are
 of the processor, one thread, the least of three runs (SciPy: of two), of the whole call: what
 follows from node positions alone is part of it. Memory is the peak of the process in the first run
-beyond its inputs and imports, or that of the command that it starts. Exact are the owners of the back end `reference`; of each covered
-voxel the source position and the linear sample are computed in float64. Wrong are covered voxels
-that differ by more than a thousandth of the range of the image.
+beyond its inputs and imports; of a command it is that of the command by GNU time, and not measured
+without it. Exact are the owners of the back end `reference`; of each covered voxel the source position
+and the linear sample are computed in float64. Wrong are covered voxels that differ by more than a
+thousandth of the range of the image.
 """
 
 import json
@@ -236,14 +237,18 @@ def plastimatch_call(case):
     image, out, vectors = (f"{folder.name}/{name}.mha" for name in ("image", "out", "field"))
     sitk.WriteImage(sitk.GetImageFromArray(case["image"]), image)
     sitk.WriteImage(sitk.GetImageFromArray(field.astype(np.float32), isVector=True), vectors)
+    # The kernel counts for a child what this process has, whose copy it is at first.
+    peak, timer = Path(folder.name) / "peak", Path("/usr/bin/time")
+    words = [str(timer), "-f", "%M", "-o", str(peak)] if timer.exists() else []
     one = dict.fromkeys(("OMP_NUM_THREADS", "ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS"), "1")
 
     def call(kept=folder):  # its files last as long as the function
-        subprocess.run(["plastimatch", "warp", "--input", image, "--xf", vectors, "--output-img",
-                        out, "--interpolation", "linear", "--output-type", "float"],
+        subprocess.run([*words, "plastimatch", "warp", "--input", image, "--xf", vectors,
+                        "--output-img", out, "--interpolation", "linear", "--output-type", "float"],
                        check=True, env=os.environ | one, stdout=subprocess.DEVNULL)
         return np.where(valid, sitk.GetArrayFromImage(sitk.ReadImage(out)), 0), None
 
+    call.peak = lambda: 1024 * int(peak.read_text(encoding="ascii")) if words else None
     return call
 
 
@@ -286,7 +291,7 @@ def memory(name):
 
 def measured(call, runs):
     """Least seconds, results of the first of these runs, its peak of memory beyond what was there
-    [byte], and whether all gave the same bits.
+    [byte] (None: not measured), and whether all gave the same bits.
     """
     def spent():
         child = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -300,8 +305,7 @@ def measured(call, runs):
         results.append(call())
         seconds.append(spent() - start)
         if len(results) == 1:
-            child = 1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-            peak = max(memory("VmHWM") - before, child)
+            peak = call.peak() if hasattr(call, "peak") else memory("VmHWM") - before
     same = all(np.array_equal(results[0][0], other[0]) for other in results)
     return min(seconds), results[0], peak, same
 
@@ -327,7 +331,8 @@ def run(peer, folder, path):
     given = covered is None
     row = dict(
         case=path.stem, peer=f"{peer} {version_of(module)}", job=job, seconds=seconds,
-        megabytes=peak / 2**20, missing=None if given else int((inside & ~covered).sum()),
+        megabytes=None if peak is None else peak / 2**20,
+        missing=None if given else int((inside & ~covered).sum()),
         beyond=None if given else int((covered & ~inside).sum()),
         wrong=int((error[inside] > 1e-3 * value_range).sum()),
         error=float(error[inside & (covered if not given else inside)].max() / value_range),
@@ -346,8 +351,9 @@ def table(folder):
                 continue
             counts = " | ".join("given" if row[k] is None else f"{row[k]:,}"
                                 for k in ("missing", "beyond"))
-            print(f"| {row['peer']} | {row['job']} | {row['seconds']:.2f} | "
-                  f"{row['megabytes']:.0f} | {counts} | {row['wrong']:,} | {row['error']:.1e} | "
+            peak = "not measured" if row["megabytes"] is None else f"{row['megabytes']:.0f}"
+            print(f"| {row['peer']} | {row['job']} | {row['seconds']:.2f} | {peak} | "
+                  f"{counts} | {row['wrong']:,} | {row['error']:.1e} | "
                   f"{'yes' if row['same'] else 'no'} |")
 
 

@@ -86,21 +86,21 @@ double volume_of(const TetMesh& mesh, std::size_t t) {
   return tet_volume(at(mesh.nodes, a), at(mesh.nodes, b), at(mesh.nodes, c), at(mesh.nodes, d));
 }
 
-/// Raises fractions to the smallest one, and scales the others below 1 for it.
-void correct_total(const TetMesh& mesh, double enclosed, std::vector<double>& fraction) {
+/// Raises fractions to the smallest one, and scales all others for it. Those raised sum to at most
+/// a hundredth of what is enclosed, so the factor is 0.99 to 1.
+void raise_small(const TetMesh& mesh, double enclosed, std::vector<double>& fraction) {
   double whole = 0;
   for (std::size_t t = 0; t < fraction.size(); ++t) whole += volume_of(mesh, t);
   const double smallest = least_part * enclosed / whole;
-  double fixed = 0, scaled = 0;
+  double raised = 0, scaled = 0;
   for (std::size_t t = 0; t < fraction.size(); ++t) {
-    const bool is_small = fraction[t] <= smallest;
-    if (is_small) fraction[t] = smallest;
-    (is_small || fraction[t] >= 1 ? fixed : scaled) += fraction[t] * volume_of(mesh, t);
+    (fraction[t] <= smallest ? raised : scaled) +=
+        std::max(fraction[t], smallest) * volume_of(mesh, t);
   }
-  if (scaled == 0) return;
-  const double factor = (enclosed - fixed) / scaled;
+  if (raised == 0) return;
+  const double factor = (enclosed - raised) / scaled;
   for (double& share : fraction) {
-    if (share > smallest && share < 1) share *= factor;
+    share = share <= smallest ? smallest : std::min(1.0, share * factor);
   }
 }
 }  // namespace
@@ -136,7 +136,7 @@ ShapeLattice make_solid_lattice(const std::string& place,
   std::vector<std::uint8_t> is_cut;
   lattice.mesh = tets_around(chosen.frame, surface, &is_cut);
   lattice.fraction = fractions_within(surface, lattice.mesh, is_cut);
-  correct_total(lattice.mesh, enclosed, lattice.fraction);
+  raise_small(lattice.mesh, enclosed, lattice.fraction);
   for (std::size_t d = 0; d < 3; ++d) lattice.cells_across[d] = length[d] / chosen.frame.edge[d];
   return lattice;
 }

@@ -18,8 +18,9 @@ std::vector<double> fractions_within(const Surface& surface,
                                      const std::vector<std::uint8_t>& is_cut);
 
 /// Cells around a surface, without those outside, so that its points lie in tetrahedra. Parts of
-/// tetrahedra below a hundredth of the mean one count as this, and other ones that are cut as less,
-/// so that the volumes add up to what the surface encloses.
+/// tetrahedra below a hundredth of the mean one count as this, and all other ones, whole ones
+/// included, as less by one factor from 0.99 to 1, so that the volumes add up to what the surface
+/// encloses.
 /// @pre check_closed() has passed
 /// @param place  of the choice, for messages
 /// @throws std::invalid_argument  too many tetrahedra

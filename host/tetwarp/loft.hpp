@@ -31,7 +31,8 @@ struct LoftTube {
 /// Volume of a tube [m^3]: the integral of pi a b along the center line, and its ends.
 /// @throws std::invalid_argument  naming the station: fewer than two, radii or ends not above 0,
 ///         centers that coincide, a direction along the center line, a center line that bends so
-///         much that cross-sections meet, or a tube 10,000 times as long as wide or more
+///         much that cross-sections meet, or a tube more than 10,000 times as long as its largest
+///         radius or shorter than a 10,000th of it
 TETWARP_EXPORT double loft_volume(const LoftTube& tube);
 
 /// Closed triangle surfaces of tubes, outwards, of about `triangles` triangles in all, with points
@@ -42,8 +43,9 @@ TETWARP_EXPORT Surface make_loft_surface(const std::vector<LoftTube>& tubes,
                                          std::int64_t triangles = 1280);
 
 /// Cells of five tetrahedra that follow the tube, along its center line, its first and its second
-/// radius, and contain it: by straight faces a little more, 1.1 (4 x 4 cells across) to 1.9 (one)
-/// times its volume.
+/// radius. They contain it up to a twentieth of its smallest radius, if there are enough cells
+/// along its bends, and have more volume: from about 1.1 times that of the tube (4 x 4 cells
+/// across, long) to 2 times (one cell across, short).
 /// @throws std::invalid_argument  as loft_volume(), an invalid lattice, or cells that fold
 TETWARP_EXPORT Mesh make_loft_mesh(const LoftTube& tube, const Lattice& lattice);
 

@@ -47,7 +47,7 @@ class Gamepad : public InputDevice {
         axis(SDL_CONTROLLER_AXIS_RIGHTY), axis(SDL_CONTROLLER_AXIS_RIGHTX),
         axis(SDL_CONTROLLER_AXIS_TRIGGERLEFT) - axis(SDL_CONTROLLER_AXIS_TRIGGERRIGHT)};
     span.state.grabs = button(SDL_CONTROLLER_BUTTON_A) > 0;
-    span.seconds = since_.seconds();
+    span.seconds = std::min(since_.seconds(), most_span);
     since_ = {};
     return span;
   }

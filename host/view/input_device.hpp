@@ -25,6 +25,9 @@ struct DeviceSpan {
   double seconds = 0;  ///< since the last call
 };
 
+/// DeviceSpan::seconds of a real device, which is asked less often where pictures take long [s].
+constexpr double most_span = 0.1;
+
 class InputDevice {
  public:
   virtual ~InputDevice() = default;

@@ -14,7 +14,6 @@
 
 namespace tetwarp::view {
 namespace {
-constexpr const char* handle_name = "mouse";
 constexpr const char* replay_message = "a replay takes no input";
 // Times the size of a body: what the mouse holds of an elastic body or cloth.
 constexpr double grab_share = 0.08;

@@ -12,6 +12,21 @@
 #include "io/files/text_file.hpp"
 
 namespace tetwarp::view {
+namespace {
+bool has_handle(const Scene& scene) {
+  return std::ranges::count(scene.handles, handle_name, &Handle::name) > 0;
+}
+
+/// @throws IoError  it is no checkpoint of this scene
+void restore(const std::string& file, Simulator& simulator) {
+  const std::string bytes = read_text(file);
+  try {
+    simulator.restore(std::as_bytes(std::span(bytes)));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file, "", error.what());
+  }
+}
+}  // namespace
 
 bool has_limits(const std::optional<InputLog>& replay) {
   return replay && std::ranges::count(replay->events, InputKind::limit, &InputEvent::kind) > 0;
@@ -40,12 +55,9 @@ SimulateOptions simulate_options(const ViewOptions& of, const std::optional<Inpu
 
 std::vector<std::byte> first_state(const ViewOptions& options, Simulator& simulator) {
   if (!options.restart.empty()) {
-    const std::string bytes = read_text(options.restart);
-    try {
-      simulator.restore(std::as_bytes(std::span(bytes)));
-    } catch (const std::invalid_argument& error) {
-      throw IoError(options.restart, "", error.what());
-    }
+    const bool is_of_scene = has_handle(simulator.scene());
+    restore(options.restart, simulator);
+    if (!is_of_scene && has_handle(simulator.scene())) simulator.release_handle(handle_name);
   }
   return simulator.checkpoint();
 }

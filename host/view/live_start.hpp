@@ -12,6 +12,9 @@
 
 namespace tetwarp::view {
 
+/// Of the spring by which the mouse pulls.
+constexpr const char* handle_name = "mouse";
+
 /// Whether a replay has steps that a limit of time ended.
 bool has_limits(const std::optional<InputLog>& replay);
 
@@ -19,7 +22,8 @@ bool has_limits(const std::optional<InputLog>& replay);
 /// @throws std::invalid_argument  these cannot be repeated: several threads, back end cuda
 SimulateOptions simulate_options(const ViewOptions& of, const std::optional<InputLog>& replay);
 
-/// Goes on from ViewOptions::restart, if that is a file. @returns the checkpoint of the state
+/// Goes on from ViewOptions::restart, if that is a file; a pull of that time is over. @returns the
+/// checkpoint of the state
 /// @throws IoError  it is no checkpoint of this scene
 std::vector<std::byte> first_state(const ViewOptions& options, Simulator& simulator);
 

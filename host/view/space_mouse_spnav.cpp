@@ -28,7 +28,7 @@ class SpaceMouse : public InputDevice {
     spnav_event event;
     while (spnav_poll_event(&event) != 0) take(event);
     if (said_.seconds() > rest_seconds) state_.move = state_.turn = {0, 0, 0};
-    const DeviceSpan span{state_, since_.seconds()};
+    const DeviceSpan span{state_, std::min(since_.seconds(), most_span)};
     since_ = {};
     return span;
   }

@@ -297,7 +297,9 @@ class WarpPipeline : public WarpBackend {
     if (s == 0) cell_raster(exec_, job, part_of(progress, 0, raster));
     const ProgressPart part = part_of(progress, s == 0 ? raster : 0, 1);
     if (takes_majority(plan_.options)) {
-      majority_stage(exec_, {boxes, volume, static_cast<double>(job.background)}, part);
+      majority_stage(
+          exec_, {boxes, pairs_.rest_orientation(), volume, static_cast<double>(job.background)},
+          part);
       return;
     }
     const VoxelOverlapOp op = {boxes, transforms, roundings_.begin(s, job.cell_work, volume)};

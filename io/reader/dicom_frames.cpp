@@ -97,6 +97,7 @@ std::vector<DicomSlice> slices_of_frames(const gdcm::DataSet& attributes,
   if (std::ssize(offsets) == frames && has_place) return dose_slices(offsets, first);
   const Items own = items_of(attributes, 0x5200, 0x9230);
   if (own == nullptr || own->GetNumberOfItems() != static_cast<std::size_t>(frames)) {
+    if (frames == 1) return {first};
     const std::string name = std::filesystem::path(first.file).filename().string();
     throw IoError(first.file, name,
                   "holds " + std::to_string(frames) +

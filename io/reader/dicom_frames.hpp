@@ -20,9 +20,10 @@ std::vector<double> decimals_of(const gdcm::DataSet& attributes,
 std::vector<double> decimals_in(const std::string& text);
 
 /// The slices of the frames of a dose grid (RTDOSE), which lie along the normal, or of an enhanced
-/// image (CT, MR, PET), whose functional groups place each frame.
+/// image (CT, MR, PET), whose functional groups place each frame. Of other files of one frame, that
+/// frame.
 /// @param first   what all frames have in common
-/// @param frames  at least 2
+/// @param frames  at least 1
 /// @throws IoError for other files of several frames
 std::vector<DicomSlice> slices_of_frames(const gdcm::DataSet& attributes,
                                          const DicomSlice& first,

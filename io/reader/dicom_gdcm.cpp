@@ -109,8 +109,8 @@ std::vector<DicomSlice> slices_of(const std::string& path, const DicomHeader& he
   slice.thickness = header.number(0x0018, 0x0088, header.number(0x0018, 0x0050, 0));
   slice.slope = header.number(0x0028, 0x1053, header.number(0x3004, 0x000e, 1));
   slice.intercept = header.number(0x0028, 0x1052, 0);
-  const int frames = header.count(0x0028, 0x0008, 1);
-  return frames > 1 ? slices_of_frames(header.attributes(), slice, frames) : std::vector{slice};
+  const int frames = std::max(1, header.count(0x0028, 0x0008, 1));
+  return slices_of_frames(header.attributes(), slice, frames);
 }
 
 struct DicomFiles {

@@ -3,6 +3,8 @@
 #include "io/scene/scene_geometry.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <tetwarp/certify.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io.hpp>
@@ -135,14 +137,19 @@ constexpr double most_distance = 0.1;  // of a coarser surface, over the body's 
 // ---- meshes -------------------------------------------------------------------
 /// Refuses surfaces that touch themselves: they do not tell inside from outside.
 /// @param what  the surface, for the message
-void check_simple(const SceneValue& value, const Surface& surface, const std::string& what) {
+/// @throws std::invalid_argument
+void check_simple(const Surface& surface, const std::string& what) {
   const MovingSurface still{surface.points, surface.points, surface.triangles};
   const Certificate certificate = certify({&still, 1});
   if (certificate.pairs.empty()) return;
   const auto [a, b] = certificate.pairs.front().triangles;
-  value.fail(what + " intersects itself, in triangles " + std::to_string(a) + " and " +
-             std::to_string(b) + " and " + std::to_string(certificate.pairs.size() - 1) +
-             " other pairs");
+  const std::size_t others = certificate.pairs.size() - 1;
+  std::string problem =
+      what + " intersects itself, in triangles " + std::to_string(a) + " and " + std::to_string(b);
+  if (others > 0) {
+    problem += " and " + std::to_string(others) + (others == 1 ? " other pair" : " other pairs");
+  }
+  throw std::invalid_argument(problem);
 }
 
 /// A mesh of tetrahedra or else of triangles.
@@ -169,10 +176,10 @@ void read_mesh_key(const SceneValue& value, SceneFiles& files, Body& into) {
   } else {
     into.geometry = Surface{};
   }
-  files.add(file, [file, path, &files, &into] {
+  files.add(file, [path, &files, &into] {
     if (into.lattice) {
       Surface surface = files.read_triangles(path);
-      check_simple(file, surface, "the surface");
+      check_simple(surface, "the surface");
       into.geometry = std::move(surface);
     } else if (into.kind == BodyKind::fem) {
       into.geometry = files.read_mesh(path);
@@ -261,20 +268,20 @@ double diagonal_of(const Surface& surface) {
 void read_distance(const SceneValue& value, SceneFiles& files, Body& into) {
   const double distance = value.number();
   if (!(distance > 0)) value.fail("expected a length above 0");
-  files.add(value, [value, distance, &into] {
+  files.add(value, [distance, &into] {
     const auto* fine = std::get_if<Surface>(&into.geometry);
     if (fine == nullptr || !into.lattice) {
-      value.fail("is only for bodies of a mesh of triangles with a lattice, remove it");
+      throw std::invalid_argument(
+          "is only for bodies of a mesh of triangles with a lattice, remove it");
     }
     const double size = diagonal_of(*fine);
     if (!(distance <= most_distance * size)) {
-      value.fail("is too coarse: expected at most a tenth of the body's size, " +
-                 SceneJson(most_distance * size).dump());
+      throw std::invalid_argument("is too coarse: expected at most a tenth of the body's size, " +
+                                  SceneJson(most_distance * size).dump());
     }
-    Surface coarse = coarse_surface(value.place(), *fine, distance);
-    check_simple(
-        value, coarse,
-        "is too coarse: the surface of " + std::to_string(coarse.triangles.size()) + " triangles");
+    Surface coarse = coarse_surface("the surface", *fine, distance);
+    check_simple(coarse, "is too coarse: the surface of " +
+                             std::to_string(coarse.triangles.size()) + " triangles");
     into.surface = std::move(coarse);
   });
 }

@@ -88,18 +88,17 @@ struct GaussianLabels {
       window.set_weights(x[axis], begin[axis], size[axis], weight[axis]);
     }
     constexpr double whole = 8;  // integral of the three erf, each from -1 to 1
-    return label_of_largest_share(
-        static_cast<double>(first), whole * 0x1p-40, [&](LabelShares& shares) {
-          for (int k = 0; k < size[2]; ++k) {
-            for (int j = 0; j < size[1]; ++j) {
-              const T* const row = row_at(j, k);
-              const double of_row = weight[1][j] * weight[2][k];
-              for (int i = 0; i < size[0]; ++i) {
-                shares.add(static_cast<double>(row[i]), weight[0][i] * of_row);
-              }
-            }
+    return label_of_largest_share(background, whole * 0x1p-40, [&](LabelShares& shares) {
+      for (int k = 0; k < size[2]; ++k) {
+        for (int j = 0; j < size[1]; ++j) {
+          const T* const row = row_at(j, k);
+          const double of_row = weight[1][j] * weight[2][k];
+          for (int i = 0; i < size[0]; ++i) {
+            shares.add(static_cast<double>(row[i]), weight[0][i] * of_row);
           }
-        });
+        }
+      }
+    });
   }
 };
 

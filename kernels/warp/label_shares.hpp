@@ -79,12 +79,13 @@ class LabelShares {
 
 /// The label with the largest share. Shares that differ by at most `tie` are equal: of equal ones
 /// the lowest wins.
-/// @param none     the label if no share is above `tie`
+/// @param none     the label if there is no share
+/// @param tie      below 1
 /// @param add_all  add_all(LabelShares&) adds all shares, in the same way each time
 template <class AddAll>
 TETWARP_HD double label_of_largest_share(double none, double tie, AddAll&& add_all) {
-  LabelShare winner = {none, 0};
-  double above = -0x1p63;  // below all labels
+  LabelShare winner = {none, -1};  // below all shares, so that the first label replaces it
+  double above = -0x1p63;          // below all labels
   for (bool is_done = false; !is_done;) {
     LabelShares shares(above);
     add_all(shares);

@@ -13,10 +13,13 @@ class LabelSums {
  public:
   static constexpr bool skips_zeros = false;
 
-  TETWARP_HD explicit LabelSums(LabelShares& shares) : shares_(shares) {}
+  /// @param rest_orientation  sign of the rest volume of each tetrahedron
+  TETWARP_HD LabelSums(LabelShares& shares, View<const std::int8_t> rest_orientation)
+      : shares_(shares), rest_orientation_(rest_orientation) {}
 
-  /// The parts of a box have the volume that they have in the output.
-  TETWARP_HD static double scale_of(int /*t*/) { return 1; }
+  /// The parts of a box have the volume that they have in the output; what is flat at rest has
+  /// none.
+  TETWARP_HD double scale_of(int t) const { return rest_orientation_[t] == 0 ? 0 : 1; }
 
   template <class T>
   TETWARP_HD void add(const T* sample, int /*components*/, double share) {
@@ -27,12 +30,14 @@ class LabelSums {
 
  private:
   LabelShares& shares_;
+  View<const std::int8_t> rest_orientation_;
   double covered_ = 0;
 };
 
 /// One index = one voxel of the output, counted from `first`; any order.
 struct VoxelMajorityOp : BoxOverlaps {
   static constexpr int resident_blocks = 2;  ///< leaves 128 registers per thread: no spills
+  View<const std::int8_t> rest_orientation;  ///< sign of the rest volume, shape [tet_count]
   NumberView output;                         ///< labels [k][j][i]
   double background;
   std::int64_t first = 0;  ///< voxel of index 0
@@ -46,7 +51,7 @@ struct VoxelMajorityOp : BoxOverlaps {
     constexpr double tie = 0x1p-16;  // rounding of nodes decides nothing
     output.set(voxel, label_of_largest_share(background, tie, [&](LabelShares& shares) {
                  shares.add(background, 0);
-                 LabelSums sums(shares);
+                 LabelSums sums(shares, rest_orientation);
                  add_voxel(x, cell, sums);
                  shares.add_to(background, max_of(1 - sums.covered(), 0.0));
                }));

@@ -119,6 +119,8 @@ SHARED = put(np.zeros((20, 24, 32), np.float32))
     ({"deformed": lambda a: put(a, 1)}, "deformed: expected an array on device 0"),
     ({"deformed": lambda a: put(a[1:])}, r"deformed: expected shape \(\d+, 3\) of float64"),
     ({"volume": lambda a: SHARED, "out": lambda a: SHARED}, "out: shares memory with a source"),
+    ({"volume": lambda a: [put(a), put(a)], "out": lambda a: [SHARED, SHARED]},
+     r"out\[1\]: shares memory with a source or another output"),
     ({"out": lambda a: np.empty_like(a)}, "out: expected an array on device 0"),
     ({"out": lambda a: put(a.astype(int))}, r"out: expected shape \(20, 24, 32\) of float32"),
 ])
@@ -131,6 +133,37 @@ def test_wrong_device_arrays_are_named(cupy, volume, mesh, twisted, change, mess
 
     with pytest.raises(ValueError, match=message):
         tetwarp.warp(**arguments)
+
+
+@needs_emulation
+def test_tensors_are_known_by_their_class_and_refused_with_a_gradient(
+        cupy, volume, mesh, twisted, monkeypatch):
+    class Tensor(DeviceArray):
+        __module__ = "torch"
+        requires_grad = False
+        is_contiguous = property(lambda self: lambda: self.flags.c_contiguous)
+
+    class MetaTensor(Tensor):
+        __module__ = "of_others"
+
+    stream = types.SimpleNamespace(cuda_stream=1, synchronize=lambda: None)
+    module = types.ModuleType("torch")
+    module.Tensor, module.float32 = Tensor, np.dtype(np.float32)
+    module.cuda = types.SimpleNamespace(current_stream=lambda number: stream)
+    module.empty = lambda shape, dtype, device: put(np.empty(shape, dtype))
+    monkeypatch.setitem(sys.modules, "torch", module)
+    samples, moved = MetaTensor(), MetaTensor()
+    samples.array, moved.array = volume.array.copy(), twisted.copy()
+
+    result = tetwarp.warp(samples, *mesh, moved, affine=volume.affine)
+    expected = tetwarp.warp(volume, *mesh, twisted, backend="cpu")
+    assert np.allclose(result.volume.array, expected.volume, rtol=0, atol=1e-5)
+
+    for name, tensor in (("volume", samples), ("deformed", moved)):
+        tensor.requires_grad = True
+        with pytest.raises(ValueError, match=name + r": .* use \.detach\(\) or autograd_warp"):
+            tetwarp.warp(samples, *mesh, moved, affine=volume.affine)
+        tensor.requires_grad = False
 
 
 @pytest.mark.skipif(USABLE, reason="there is a usable device")

@@ -30,6 +30,12 @@ def is_foreign(value: Any) -> bool:
     return hasattr(value, "__dlpack__") and not isinstance(value, np.ndarray)
 
 
+def is_torch(value: Any) -> bool:
+    """Whether it is a tensor of PyTorch or of a class made from it."""
+    torch = sys.modules.get("torch")
+    return torch is not None and isinstance(value, torch.Tensor)
+
+
 def check_host(value: Any, name: str, reason: str = "") -> None:
     """Raises ValueError if an array of another library is not in memory of the host."""
     kind, number = value.__dlpack_device__()
@@ -62,7 +68,10 @@ def maker_of(value: Any) -> Callable[[np.ndarray], Any]:
     """What makes an array of NumPy one of the library of `value`, in the same memory."""
     if not is_foreign(value):
         return _same
-    if hasattr(value, "__array_namespace__"):
+    namespace: Any
+    if is_torch(value):
+        namespace = sys.modules["torch"]
+    elif hasattr(value, "__array_namespace__"):
         namespace = value.__array_namespace__()
     else:
         namespace = sys.modules[type(value).__module__.partition(".")[0]]

@@ -7,7 +7,7 @@ import sys
 from typing import Any, Sequence
 
 from . import _core
-from ._arrays import check_host, check_samples, describe, is_foreign
+from ._arrays import check_host, check_samples, describe, is_foreign, is_torch
 
 _CUDA = (2, 13)  # numbers of DLPack: plain and managed memory
 
@@ -28,8 +28,9 @@ class Device:
     def __init__(self, value: Any, name: str) -> None:
         """Raises ValueError, with what to do, if one of them cannot be used."""
         self.number = int(value.__dlpack_device__()[1])
-        self._library = sys.modules[type(value).__module__.partition(".")[0]]
-        self._is_torch = self._library.__name__ == "torch"
+        self._is_torch = is_torch(value)
+        library = "torch" if self._is_torch else type(value).__module__.partition(".")[0]
+        self._library: Any = sys.modules[library]
         if not self._is_torch and self._library.__name__ != "cupy":
             check_host(value, name, f"arrays of {self._library.__name__} are not taken there")
         for status in _core.available_backends(self.number):
@@ -95,6 +96,10 @@ class Device:
     def _check(self, value: Any, name: str) -> None:
         if not on_device(value) or int(value.__dlpack_device__()[1]) != self.number:
             raise ValueError(f"{name}: expected an array on device {self.number}, as the volume is")
-        ordered = value.is_contiguous() if self._is_torch else value.flags.c_contiguous
+        if is_torch(value) and value.requires_grad:
+            raise ValueError(
+                f"{name}: expected a tensor that needs no gradient; use .detach() or autograd_warp"
+            )
+        ordered = value.is_contiguous() if is_torch(value) else value.flags.c_contiguous
         if not ordered:
             raise ValueError(f"{name}: expected an array in C order; it is not copied on a device")

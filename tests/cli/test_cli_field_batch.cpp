@@ -65,6 +65,19 @@ TEST_F(FieldBatch, RunsBesideWarpsByAMesh) {
   EXPECT_EQ(sha256_of_file(scene / "three.nii"), alone);
 }
 
+/// Defaults that only warps by a mesh have are left out of the others.
+TEST_F(FieldBatch, TakesDefaultsOfMeshesForMeshesAlone) {
+  write_text(scene / "jobs.csv",
+             "volume,mesh,transform,output\n"
+             "volume.vtkhdf,,field.vtkhdf,one.nii\n"
+             "volume.vtkhdf,mesh.vtkhdf,,two.nii\n");
+  for (const char* jobs : {"1", "2"}) {
+    made({"warp", "--batch", "jobs.csv", "--jobs", jobs, "--memory", "4G", "--strict", "--device",
+          "0", "--no-skip", "all", "--steps", "3", "--filter", "cubic"});
+    for (const char* name : {"one.nii", "two.nii"}) EXPECT_TRUE(fs::remove(scene / name)) << name;
+  }
+}
+
 TEST_F(FieldBatch, PlansAndRefusesJobs) {
   const auto batch = [&](const Names& more) {
     std::string jobs;

@@ -188,9 +188,11 @@ TEST(LargeVolume, FourTimesTheLimitKeepsToIt) {
 }
 
 /// A file of 2048^3 samples that are all background: no chunk is stored.
-void write_header_only(const std::string& path, std::int64_t edge) {
+void write_header_only(const std::string& path,
+                       std::int64_t edge,
+                       PixelType type = PixelType::float32) {
   Grid grid = scenes::unit_grid(edge, edge, edge);
-  BlockVolumeWriter(path, grid, {{"density", PixelType::float32, 1}}, {}, false).finish();
+  BlockVolumeWriter(path, grid, {{"density", type, 1}}, {}, false).finish();
 }
 
 TEST(DryRun, PlansBillionsOfVoxelsFromHeadersAlone) {
@@ -226,6 +228,28 @@ TEST(DryRun, PlansBillionsOfVoxelsFromHeadersAlone) {
   EXPECT_GT(step["bytes_read"].get<double>(), 3.5 * voxels);
   EXPECT_LT(step["bytes_read"].get<double>(), 8 * voxels);
   EXPECT_EQ(folder.names(), (Names{"mesh.vtkhdf", "plan.json", "volume.vtkhdf"}));
+}
+
+/// Labels by Gaussian weights need the tetrahedron of each voxel.
+TEST(DryRun, CountsOwnersOfGaussianLabels) {
+  const TemporaryFolder folder;
+  constexpr std::int64_t edge = 256;
+  write_header_only(folder / "volume.vtkhdf", edge, PixelType::uint8);
+  write_waves(folder / "mesh.vtkhdf", scenes::unit_grid(edge, edge, edge));
+  const auto planned = [&](const Names& more) {
+    Names words{"warp",     "volume.vtkhdf", "mesh.vtkhdf",  "--steps",  "0",
+                "-o",       "o.vtkhdf",      "--dry-run",    "--report", "plan.json",
+                "--filter", "labels",        "--label-rule", "gaussian"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(run_command(folder, words).exit_code, 0);
+    return Json::parse(text_of(folder / "plan.json"))["plans"][0]["memory"].get<double>();
+  };
+  constexpr double voxels = static_cast<double>(edge * edge * edge);
+
+  // The output `tet` holds the same numbers: it takes their place.
+  const double kept = planned({});
+  EXPECT_GT(kept, 6 * voxels);
+  EXPECT_NEAR(kept, planned({"--outputs", "tet"}), 0.5 * voxels);
 }
 }  // namespace
 }  // namespace tetwarp::test

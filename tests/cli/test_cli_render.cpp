@@ -59,12 +59,59 @@ TEST(RenderCommand, MakesFilmsOfVolumes) {
   EXPECT_EQ(rays.out, "2 pictures of 20 x 20 pixels: r.gif\n") << rays.err;
 }
 
+/// The range of Hounsfield units has colors of its own, unless a window is given.
+TEST(RenderCommand, CastsInTheWindowThatIsGiven) {
+  const TemporaryFolder folder;
+  Volume volume = ramp_volume<float>();
+  for (float& sample : volume.samples<float>()) sample = 2 * sample - 1000;  // -998 to 920
+  write_volumes(folder / "a.vtkhdf", {&volume});
+  std::vector<std::string> pictures;
+  for (const Words& window : {Words{}, Words{"--low", "-998"}, Words{"--high", "900"}}) {
+    Words words{"render", "a.vtkhdf", "--cast", "-o", "a.png", "--pixels", "40,30"};
+    words.insert(words.end(), window.begin(), window.end());
+    const CommandResult result = run_command(folder, words);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    pictures.push_back(text_of(folder / "a.png"));
+  }
+  EXPECT_NE(pictures[0], pictures[1]);
+  EXPECT_NE(pictures[0], pictures[2]);
+}
+
+TEST(RenderCommand, DrawsTheSameStepBeside) {
+  const TemporaryFolder folder;
+  const Volume up = ramp_volume<float>();
+  Volume down = up;
+  for (float& sample : down.samples<float>()) sample = 961 - sample;
+  write_volumes(folder / "up.vtkhdf", {&up});
+  write_volumes(folder / "down.vtkhdf", {&down});
+  TemporalVolumeWriter writer(folder / "both.vtkhdf");
+  writer.append(0, {&up});
+  writer.append(1, {&down});
+  writer.finish();
+  const auto drawn = [&](const std::string& volume, const std::string& beside,
+                         const std::string& output, const Words& more) {
+    Words words{"render", volume, "--beside", beside, "-o", output, "--height", "20"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run_command(folder, words);
+    EXPECT_TRUE(result.exit_code == 0 || output.ends_with(".gif")) << result.err;
+    return result.exit_code == 0 ? text_of(folder / output) : result.err;
+  };
+
+  const std::string second = drawn("both.vtkhdf", "both.vtkhdf", "a.png", {"--step", "1"});
+  EXPECT_EQ(second, drawn("down.vtkhdf", "down.vtkhdf", "b.png", {}));
+  EXPECT_NE(second, drawn("down.vtkhdf", "up.vtkhdf", "c.png", {}));
+
+  const std::string film = drawn("both.vtkhdf", "both.vtkhdf", "a.gif", {});
+  if (film.find("libgif-dev") != std::string::npos) GTEST_SKIP() << "needs libgif-dev";
+  EXPECT_NE(film, drawn("both.vtkhdf", "up.vtkhdf", "b.gif", {}));
+}
+
 TEST(RenderCommand, DrawsAVolumeOfOneValue) {
   const TemporaryFolder folder;
   write_ramp(folder, "flat.vtkhdf", 0);
 
-  for (const Words& more : {Words{}, Words{"--cast"}}) {
-    Words words{"render", "flat.vtkhdf", "-o", "flat.png", "--height", "20"};
+  for (const Words& more : {Words{"--height", "20"}, Words{"--cast", "--pixels", "20,20"}}) {
+    Words words{"render", "flat.vtkhdf", "-o", "flat.png"};
     words.insert(words.end(), more.begin(), more.end());
     EXPECT_EQ(run_command(folder, words).exit_code, 0);
   }
@@ -86,7 +133,13 @@ TEST(RenderCommand, NamesWhatIsWrongInOneLine) {
       {{"a.vtkhdf", "-o", "x.png", "--cast", "--camera", "1,1,1,1,1,1"}, "the same point"},
       {{"a.vtkhdf", "-o", "x.png", "--cast", "down.json"}, "points[1].value"},
       {{"a.vtkhdf", "-o", "x.png", "--cast", "opaque.json"}, "points[0]"},
-      {{"a.vtkhdf", "-o", "x.png", "--cast", "none.json"}, "none.json"}};
+      {{"a.vtkhdf", "-o", "x.png", "--cast", "none.json"}, "none.json"},
+      {{"a.vtkhdf", "-o", "x.png", "--cast", "down.json", "--low", "1"}, "--low: the file"},
+      {{"a.vtkhdf", "-o", "x.png", "--cast", "--low", "3", "--high", "3"}, "--low: is not below"},
+      {{"a.vtkhdf", "-o", "x.png", "--cast", "--low", "1000"}, "from 1000 to 960"},
+      {{"a.vtkhdf", "-o", "x.png", "--cast", "--height", "20"}, "--height: is of slices"},
+      {{"a.vtkhdf", "-o", "x.png", "--pixels", "20,20"}, "--pixels: needs --cast"},
+      {{"a.vtkhdf", "-o", "x.png", "--seconds", "1"}, "--seconds: is of a film"}};
   for (const auto& [options, named] : cases) {
     Words words{"render"};
     words.insert(words.end(), options.begin(), options.end());

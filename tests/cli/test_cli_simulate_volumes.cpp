@@ -163,6 +163,9 @@ TEST(SimulatedVolumes, NameWhatIsWrongInOneLine) {
              R"({"points": [{"value": 0, "color": [0, 0, 2], "opacity": 0}]})");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"--cast"}, "needs --picture or --film"},
+      {{"--pixels", "60,40"}, "--pixels: needs --picture or --film"},
+      {{"--like-series", "1.2"}, "--like-series: needs --warp or --cast"},
+      {{"--picture", "--cast", "--spacing", "1e-15,1e-15,1e-15"}, ": --cast: output grid"},
       {{"--outputs", "mask"}, "needs --warp"},
       {{"--warp", "--outputs", "forward"}, "--grid same"},
       {{"--picture", "--cast", "colors.json"}, "points[0].color"},

@@ -116,6 +116,59 @@ TEST_F(CliTransforms, OptionsOfMeshesAndBadFilesAreRefused) {
   EXPECT_FALSE(fs::exists(scene / "o.vtkhdf"));
 }
 
+TEST_F(CliTransforms, ReportsAndProvenanceReplaceNoOtherFile) {
+  run({"compose", "mesh.vtkhdf", "-o", "field.vtkhdf", "--like", "volume.vtkhdf", "--steps", "3"});
+  const Names before = scene.names();
+  const std::string volume = text_of(scene / "volume.vtkhdf");
+  const auto refused = [&](const Names& more, const std::string& line) {
+    Names words{"warp", "volume.vtkhdf", "field.vtkhdf", "-o", "o.vtkhdf"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run(words, 1);
+    EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
+  };
+
+  refused({"--report", "volume.vtkhdf"}, "volume.vtkhdf: is also an input");
+  refused({"--report", "o.vtkhdf"}, "o.vtkhdf: would be written twice");
+  refused({"--report", "o.vtkhdf.json", "--provenance"}, "o.vtkhdf.json: would be written twice");
+
+  EXPECT_EQ(scene.names(), before);
+  EXPECT_EQ(text_of(scene / "volume.vtkhdf"), volume);
+}
+
+/// What is left out is told, and with --quiet by the report alone.
+TEST_F(CliTransforms, ReportWhatTheyLeaveOut) {
+  run({"compose", "mesh.vtkhdf", "-o", "field.vtkhdf", "--like", "volume.vtkhdf", "--steps", "3"});
+  Volume volume = ramp_volume<float>();
+  const auto samples = volume.samples<float>();
+  std::string text =
+      "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 10 8\n"
+      "space: right-anterior-superior\nspace origin: (5,-3,100)\n"
+      "space directions: (2,0,0) (0,2,0) (0,0,2)\nencoding: raw\nendian: little\n"
+      "Patient:=no one\n\n";
+  text.append(reinterpret_cast<const char*>(samples.data()), 4 * samples.size());
+  write_text(scene / "volume.nrrd", text);
+  const Names words{"warp", "volume.nrrd", "field.vtkhdf", "-o", "o.vtkhdf", "--report", "r.json"};
+  Names quiet = words;
+  quiet.emplace_back("--quiet");
+
+  const std::string told = run(words).err;
+  const std::string line = "volume.nrrd: left out: ";
+  EXPECT_NE(told.find(line), std::string::npos) << told;
+  EXPECT_EQ(run(quiet).err, "");
+  EXPECT_NE(text_of(scene / "r.json").find(line), std::string::npos);
+}
+
+TEST_F(CliTransforms, RunWithoutMpirun) {
+  run({"compose", "mesh.vtkhdf", "-o", "field.vtkhdf", "--like", "volume.vtkhdf", "--steps", "3"});
+  const CommandResult result =
+      run_command(scene, {"warp", "volume.vtkhdf", "field.vtkhdf", "-o", "o.vtkhdf"},
+                  {.launcher = {"/usr/bin/env", "OMPI_COMM_WORLD_SIZE=2"}});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("runs without mpirun"), std::string::npos) << result.err;
+  EXPECT_FALSE(fs::exists(scene / "o.vtkhdf"));
+}
+
 /// The mesh covers every voxel center; cut in half, it moves all of them as its nearest points.
 TEST_F(CliTransforms, VoxelsOutsideMoveWithTheNearestPoint) {
   const Mesh whole = box_mesh();

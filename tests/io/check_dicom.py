@@ -244,6 +244,15 @@ def check_enhanced(run, random_numbers):
         expect(f"enhanced {n}", read_by_command(run, "enhanced.dcm"),
                sorted_volume(samples * slopes + 3, affine))
 
+    place, alike = groups(0, 0.5)
+    single = {(0x28, 8): (b"IS", "1"), (0x5200, 0x9230): sequence({**place, **alike})}
+    with open(run.path("single.dcm"), "wb") as file:
+        file.write(dicom(np.transpose(samples, (2, 1, 0))[:1], {**enhanced, **single}))
+    thick = affine.copy()
+    thick[:3, 2] *= 9 / np.linalg.norm(affine[:3, 2])
+    expect("enhanced, of one frame", read_by_command(run, "single.dcm"),
+           sorted_volume(samples[:, :, :1] * 0.5 + 3, thick))
+
     def refused(words, facts):
         with open(run.path("enhanced.dcm"), "wb") as file:
             file.write(dicom(pixels, {**enhanced, **facts}))

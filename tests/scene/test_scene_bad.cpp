@@ -57,6 +57,8 @@ const Slip slips[] = {
      "bodies[12].shape.tubes[1]: stations[1].center: is that of the station before, move it"},
     {"\"lattice\": {\"cells\": [6, 2, 2]},", "",
      "bodies[13].shape: needs a lattice beside it, e.g. {\"cells\": [8, 2, 2]}"},
+    {"\"density\": 2000, ", "\"density\": 2000, \"lattice\": {\"tets\": 9}, ",
+     "bodies[12].lattice: is not for rigid bodies, remove it or change the kind"},
     {"{\"type\": \"loft\", \"tubes\": [", "{\"type\": \"loft\", \"tubes\": [], \"ends\": [",
      "bodies[12].shape.tubes: is empty, expected a tube or more"},
     {"\"kind\": \"rigid\", \"density\": 2000", "\"kind\": \"cloth\", \"density\": 2000",

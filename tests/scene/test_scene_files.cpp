@@ -2,6 +2,7 @@
 /// Volumes and meshes that scene files name.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <tetwarp/io.hpp>
@@ -133,6 +134,35 @@ TEST(SceneFiles, CellsThatAreThereTwiceCountOnce) {
   EXPECT_EQ(message,
             "bodies[0].mesh: triangles 0 and 2 are the same and would count twice, remove one of "
             "them");
+}
+
+/// What is found out once files are read names its place once.
+TEST(SceneFiles, SurfacesThatDoNotFitNameTheirPlaceOnce) {
+  const ScratchFolder folder;
+  const std::string solid =
+      std::string(solid_keys) + R"(, "lattice": {"edge": 1}, "mesh": {"file": "s.vtkhdf"})";
+  Surface surface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                  {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  const auto message_with = [&](const std::string& keys) {
+    write_surface(folder / "s.vtkhdf", surface);
+    const std::string scene = write_scene(folder, solid + keys);
+    const std::string message = io_error([&] { read_scene(scene); });
+    EXPECT_TRUE(message.starts_with(scene + ": ")) << message;
+    return message.substr(std::min(message.size(), scene.size() + 2));
+  };
+  EXPECT_TRUE(message_with(R"(, "surface": {"distance": 0.9})")
+                  .starts_with("bodies[0].surface.distance: is too coarse: expected at most"));
+  const std::size_t count = surface.points.size();
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto [x, y, z] = surface.points[p];
+    surface.points.push_back({x + 0.1, y + 0.1, z + 0.1});
+  }
+  for (std::size_t t = 0; t < 4; ++t) {
+    const auto [a, b, c] = surface.triangles[t];
+    surface.triangles.push_back({a + 4, b + 4, c + 4});
+  }
+  EXPECT_TRUE(message_with("").starts_with(
+      "bodies[0].mesh.file: the surface intersects itself, in triangles "));
 }
 
 TEST(SceneFiles, SurfacesAndObstaclesAreTriangles) {

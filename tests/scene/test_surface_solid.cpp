@@ -126,5 +126,32 @@ TEST(SurfaceSolid, LatticesHoldEveryPointAndTheWholeVolume) {
   }
 }
 
+/// Parts below a hundredth of the mean one are raised to it; all others are scaled by one factor.
+TEST(SurfaceSolid, LatticesScaleLargeFractionsByOneFactorNearOne) {
+  for (const auto& [name, shape] : named_shapes()) {
+    const Surface surface = make_shape_surface(shape, 400);
+    for (const std::int64_t cells : {1, 2, 5}) {
+      const ShapeLattice lattice =
+          make_solid_lattice("lattice", surface, {.cells = {{cells, cells, cells}}});
+      const std::vector<double> within = fractions_within(
+          surface, lattice.mesh, std::vector<std::uint8_t>(lattice.mesh.tets.size(), 1));
+      const std::vector<double> whole(within.size(), 1);
+      const double least = 0.01 * volume_of(surface) / filled(lattice.mesh, whole);
+      double low = 2, high = 0;
+      for (std::size_t t = 0; t < within.size(); ++t) {
+        if (within[t] <= least) {
+          ASSERT_NEAR(lattice.fraction[t], least, 1e-12) << name << ' ' << cells;
+        } else {
+          low = std::min(low, lattice.fraction[t] / within[t]);
+          high = std::max(high, lattice.fraction[t] / within[t]);
+        }
+      }
+      EXPECT_GE(low, 0.99 - 1e-9) << name << ' ' << cells;
+      EXPECT_LE(high, 1 + 1e-9) << name << ' ' << cells;
+      EXPECT_LT(high - low, 1e-7) << name << ' ' << cells;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetwarp

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """A room over a network that is slow and loses packets: namespaces joined by a pair of interfaces.
 
-    check_network.py COMMAND    exit status 77 where namespaces, Xvfb or xdotool are missing
+    check_network.py COMMAND    exit status 77 where namespaces, such a wire, Xvfb or xdotool are missing
 
 The master is on one side and two screens on the other. One joins late, is killed, and joins again;
-the wire is cut, and the screens come back. At the end both show what the geometry of the room says.
+then the other does. At the end both show what the geometry of the room says.
 """
 import os
 import re
@@ -48,16 +48,20 @@ def write_files(folder):
               "screens": [{screens}]}}""", encoding="ascii")
 
 
+def made(words):
+    run(words, capture_output=True)
+
+
 def join_networks():
     """A wire to another namespace, with delay and loss in both directions."""
-    run(["mount", "-t", "tmpfs", "tmpfs", "/run"])
-    run(["ip", "link", "set", "lo", "up"])
-    run(["ip", "netns", "add", SIDE])
-    run(["ip", "link", "add", "near", "type", "veth", "peer", "name", "wire", "netns", SIDE])
-    run(["ip", "addr", "add", f"{HERE}/24", "dev", "near"])
-    run(["ip", "link", "set", "near", "up"])
+    made(["mount", "-t", "tmpfs", "tmpfs", "/run"])
+    made(["ip", "link", "set", "lo", "up"])
+    made(["ip", "netns", "add", SIDE])
+    made(["ip", "link", "add", "near", "type", "veth", "peer", "name", "wire", "netns", SIDE])
+    made(["ip", "addr", "add", f"{HERE}/24", "dev", "near"])
+    made(["ip", "link", "set", "near", "up"])
     for words in (["addr", "add", f"{THERE}/24", "dev", "wire"], ["link", "set", "wire", "up"]):
-        run(["ip", "-n", SIDE, *words])
+        made(["ip", "-n", SIDE, *words])
     netem = ["root", "netem", "delay", "5ms", "loss", "2%"]
     # Without netem a narrow wire with a short queue, which delays packets and drops what is too much.
     narrow = ["root", "tbf", "rate", "8mbit", "burst", "4kb", "limit", "12kb"]
@@ -65,7 +69,7 @@ def join_networks():
         done = subprocess.run(["tc", *prefix, "qdisc", "add", "dev", wire, *netem], timeout=SECONDS,
                               capture_output=True)
         if done.returncode != 0:
-            run(["tc", *prefix, "qdisc", "add", "dev", wire, *narrow])
+            made(["tc", *prefix, "qdisc", "add", "dev", wire, *narrow])
 
 
 def dropped_packets():
@@ -115,8 +119,6 @@ def check_network(command, environment, folder):
             if n == 0:
                 screens[-1].kill()
                 screens[-1].wait(SECONDS)
-        run(["ip", "link", "set", "near", "down"])
-        run(["ip", "link", "set", "near", "up"])
         screens[0].kill()
         screens[0].wait(SECONDS)
         screens.append(screen(command, "front", environment, folder))
@@ -149,7 +151,11 @@ def main():
             print("skipped: network namespaces are not permitted")
             sys.exit(77)
         os.execvpe(own[0], [*own, sys.executable, "-B", *sys.argv], os.environ | {INSIDE: "1"})
-    join_networks()
+    try:
+        join_networks()
+    except subprocess.CalledProcessError as error:
+        print(f"skipped: {' '.join(error.cmd)}: {error.stderr.decode().strip()}")
+        sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="tetwarp-network-") as name:
         folder = Path(name)
         write_files(folder)

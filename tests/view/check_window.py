@@ -190,6 +190,18 @@ def check_device(command, environment, folder):
         fail(f"missing device: status {missing.returncode}, {missing.stderr!r}")
 
 
+def check_film_failure(command, environment, folder):
+    """A film whose file cannot be written is an error at the end; the other results are written."""
+    (folder / "full_0000.png").mkdir()
+    done = view(command, ["scene.json", "--fast", "--steps", "3", "--size", "320,240", "--film",
+                          "full.png", "--record", "full.txt", "--checkpoint", "full.bin"],
+                environment, folder)
+    if done.returncode != 1 or "full_0000.png" not in done.stderr:
+        fail(f"film failure: status {done.returncode}, {done.stderr!r}")
+    if not (folder / "full.txt").is_file() or not (folder / "full.bin").is_file():
+        fail("film failure: record and checkpoint are missing")
+
+
 def main():
     command = str(Path(sys.argv[1]).resolve())
     with tempfile.TemporaryDirectory(prefix="tetwarp-window-") as name:
@@ -204,6 +216,7 @@ def main():
             body = check_picture(command, environment, folder)
             check_pull(command, environment, folder, body)
             check_device(command, environment, folder)
+            check_film_failure(command, environment, folder)
             check_colors(command, environment, folder)
 
 

@@ -14,6 +14,7 @@
 #include "host/base/point3.hpp"
 #include "host/view/input_log.hpp"
 #include "host/view/live_simulation.hpp"
+#include "host/view/live_start.hpp"
 #include "host/view/view_options.hpp"
 #include "host/view/view_tools.hpp"
 #include "tests/support/run_command.hpp"
@@ -214,6 +215,33 @@ TEST(LiveSimulation, RepeatsStepsThatWereOutOfTime) {
   EXPECT_EQ(repeated.checkpoint(), recorded.checkpoint());
   options.threads = 2;
   EXPECT_THROW(LiveSimulation(scene, options, {}), std::invalid_argument);
+}
+
+/// Nobody holds what was pulled when the checkpoint was written.
+TEST(LiveSimulation, APullEndsWithItsCheckpoint) {
+  const TemporaryFolder folder;
+  ViewOptions options;
+  options.paused = true;
+  LiveSimulation pulled(live_scene(), options, {});
+  pulled.begin();
+  frame_at(pulled, 0);
+  pulled.give({.kind = OrderKind::grab, .body = 1, .point = {0, 0, 0.2}});
+  pulled.give({.kind = OrderKind::pull, .point = {0.05, 0, 0.2}});
+  pulled.give({.kind = OrderKind::step});
+  EXPECT_GT(frame_at(pulled, 1).grab->force[0], 0);
+  pulled.end();
+  const std::vector<std::byte> bytes = pulled.checkpoint();
+  options.restart = folder / "pulled.bin";
+  std::ofstream(options.restart, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  Simulator restarted(live_scene(), simulate_options(options, {}));
+  const std::vector<std::byte> start = first_state(options, restarted);
+  for (int n = 0; n < 2; ++n) {  // the second time after the key r
+    restarted.step();
+    EXPECT_EQ(restarted.record().bodies[1].handle_force, (Point3{0, 0, 0}));
+    restarted.restore(start);
+  }
 }
 
 TEST(LiveSimulation, RepeatsItsInputBitForBit) {

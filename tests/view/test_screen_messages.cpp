@@ -52,6 +52,7 @@ TEST(ScreenMessage, IsTheSameAfterItsBytes) {
                      {{0, 1, 0}, {4, 5, 6}, {}},
                      {1, false, 0.5, 2, Cut{{1, 2, 3}, {0, 0.6, 0.8}}},
                      {}};
+  frame.look.curve = {{0, {1, 0, 0}, 0}, {0.5, {0, 0.25, 0}, 0.5}, {1, {0, 0, 1}, 1}};
   frame.state = {std::byte{3}};
   const auto framed = again<FrameMessage>(ToScreen(frame), to_screen);
   EXPECT_EQ(framed.frame, 6u);
@@ -97,6 +98,34 @@ TEST(ScreenMessage, NumbersOutOfRangeAreRefused) {
   is_refused(bad);
   bad = frame;
   bad.eye_separation = -1;
+  is_refused(bad);
+  frame.look.curve = {{0, {0, 0, 0}, 0}, {0.5, {0, 0, 0}, 0}, {1, {0, 0, 0}, 0}};
+  EXPECT_NO_THROW(to_screen(bytes_of(ToScreen(frame))));
+  bad = frame;
+  bad.look.curve.insert(bad.look.curve.begin() + 1, 62, frame.look.curve[1]);
+  is_refused(bad);
+  bad = frame;
+  bad.look.curve = {{0, {0, 0, 0}, 0}};
+  is_refused(bad);
+  bad = frame;
+  bad.look.curve.insert(bad.look.curve.begin() + 1, {0.75, {0, 0, 0}, 0});
+  is_refused(bad);
+  for (const double number : {2.0, -0.1, std::nan("")}) {
+    bad = frame;
+    bad.look.curve[1].opacity = number;
+    is_refused(bad);
+    bad = frame;
+    bad.look.curve[1].value = number;
+    is_refused(bad);
+    bad = frame;
+    bad.look.curve[1].color[2] = number;
+    is_refused(bad);
+  }
+  bad = frame;
+  bad.look.curve.front().value = 0.25;
+  is_refused(bad);
+  bad = frame;
+  bad.look.curve.back().value = 0.75;
   is_refused(bad);
 }
 

@@ -95,6 +95,23 @@ TEST(LabelVolumes, AreThoseOfTheReferenceForBadMeshes) {
   }
 }
 
+/// A tetrahedron that is flat at rest, in an oblique plane, has no part of any voxel.
+TEST(LabelVolumes, OfTetrahedraFlatAtRestAreTheBackground) {
+  const Grid grid = scenes::unit_grid(10, 10, 10);
+  const Mesh mesh{{{1, 1, 1}, {5, 2, 1.5}, {2, 6, 3}, {6, 7, 3.5}}, {{0, 1, 2, 3}}};
+  const scenes::Scene scene = {
+      "flat_at_rest", mesh, {{1, 1, 1}, {9, 1, 1}, {1, 9, 1}, {1, 1, 9}}, grid, grid};
+  WarpOptions options = by(LabelRule::volume);
+  options.background = 6;
+  for (const int count : {1, 5}) {  // one label everywhere, and several
+    const Volume source = blocks_of_labels(grid, count);
+    expect_reference(scene, source, options);
+    for (const double label : numbers_of(run_warp(source, scene, Backend::cpu, options).volume)) {
+      ASSERT_EQ(label, 6);
+    }
+  }
+}
+
 /// Under one linear map the share of a label in a box is what conservative carries of the volume
 /// that is 1 in the label and 0 elsewhere. The shares of all labels and of what is not covered sum
 /// to one, and the label of a voxel has the largest of them.
@@ -237,6 +254,23 @@ TEST(GaussianLabels, OfANarrowOneAreTheNearest) {
   EXPECT_EQ(differing(run_warp(source, scene, Backend::cpu, options).volume,
                       run_warp(source, scene, Backend::cpu, {.filter = Filter::nearest}).volume),
             0);
+}
+
+/// A Gaussian so wide that no weight counts: all labels within the cutoff are equal, and the lowest
+/// one wins.
+TEST(GaussianLabels, OfAVeryWideOneAreTheLowest) {
+  const Grid grid = scenes::unit_grid(6, 6, 6);
+  Volume source = make_volume(grid, PixelType::int16);
+  const auto labels = source.samples<std::int16_t>();
+  for (std::size_t v = 0; v < labels.size(); ++v) labels[v] = v % 2 == 0 ? 7 : 3;  // by column
+  const Mesh mesh = covering_mesh(grid);
+  const scenes::Scene scene = {"still", mesh, mesh.rest_positions, grid, grid};
+  WarpOptions options = by(LabelRule::gaussian);
+  options.background = 1;
+  options.label_gaussian = {.sigma = 1e5, .cutoff = 1e-5};
+  expect_reference(scene, source, options);
+  const auto found = numbers_of(run_warp(source, scene, Backend::cpu, options).volume);
+  EXPECT_EQ(std::ranges::count(found, 3.0), std::ssize(found));
 }
 
 /// The same map as mesh and as transform. Nodes are rounded to 2^-20 voxel, which may decide

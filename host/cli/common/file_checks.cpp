@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <tetwarp/mesh_import.hpp>
 
@@ -49,6 +50,17 @@ void check_output_file(const std::string& output, const std::vector<std::string>
   }
   const std::string folder = fs::path(link_target(output)).parent_path().string();
   check_new_folder(folder.empty() ? "." : folder, output);
+}
+
+void check_output_files(const std::vector<std::string>& outputs,
+                        const std::vector<std::string>& inputs) {
+  std::set<std::string> seen;
+  for (const std::string& output : outputs) {
+    check_output_file(output, inputs);
+    if (!seen.insert(canonical_path(output)).second) {
+      throw IoError(output, "", "would be written twice; give the volumes or outputs other names");
+    }
+  }
 }
 
 namespace {

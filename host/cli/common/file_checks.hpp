@@ -12,6 +12,11 @@ namespace tetwarp::cli {
 /// can be made, as FinishedFile does.
 void check_output_file(const std::string& output, const std::vector<std::string>& inputs);
 
+/// Checks the files that a job writes as check_output_file() does, and that no two of them are the
+/// same file.
+void check_output_files(const std::vector<std::string>& outputs,
+                        const std::vector<std::string>& inputs);
+
 /// Checks that a folder exists and is writable. @param output  named in the message
 void check_output_folder(const std::string& folder, const std::string& output);
 

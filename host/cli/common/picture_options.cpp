@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tetwarp/transfer_file.hpp>
+#include <vector>
 
 #include "host/cli/common/declare.hpp"
 
@@ -19,7 +20,9 @@ void declare_picture_options(CLI::App& app,
          "eye and target [" + camera + "]")
       ->delimiter(',')
       ->type_name("X,Y,Z,TX,TY,TZ");
-  app.add_option("--pixels", options.pixels, "width and height of the pictures [960,640]")
+  app.add_option_function<std::array<int, 2>>(
+         "--pixels", [&options](const std::array<int, 2>& numbers) { options.pixels = numbers; },
+         "width and height of the pictures [960,640]")
       ->delimiter(',')
       ->check(between(16, 4096))
       ->type_name("W,H");
@@ -44,10 +47,14 @@ void check_camera(const PictureOptions& options) {
 
 TransferFunction transfer_of(const PictureOptions& options,
                              const Grid& grid,
-                             const std::array<double, 2>& range) {
+                             const std::array<double, 2>& range,
+                             bool is_window) {
   const double length = preset_length(grid);
-  if (options.cast == "ct" || options.cast == "mr") {
-    return {preset_colors(options.cast, range[0], range[1]), length};
+  if (!options.casts_by_file()) {
+    if (!is_window) return {preset_colors(options.cast, range[0], range[1]), length};
+    std::vector<ColorPoint> points = preset_colors(options.cast, 0, 1);
+    for (ColorPoint& point : points) point.value = std::lerp(range[0], range[1], point.value);
+    return {points, length};
   }
   return read_transfer_function(options.cast, length);
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <stdexcept>
 #include <thread>
 #include <tuple>
@@ -19,6 +18,7 @@
 #include "host/cli/job/array_checks.hpp"
 #include "host/cli/job/memory_plan.hpp"
 #include "host/cli/job/output_writer.hpp"
+#include "host/cli/job/provenance.hpp"
 #include "host/warp/backend_choice.hpp"
 #include "io/files/extension.hpp"
 
@@ -253,18 +253,10 @@ void check_folder(const std::string& folder) {
   check_new_folder(folder, folder);
 }
 
-/// Checks that outputs and report can be written and that no two of them are the same file.
+/// Checks that all files can be written and that no two of them are the same file.
 void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
   if (!plan.output_folder.empty()) check_folder(plan.output_folder);
-  std::vector<std::string> outputs = plan.outputs();
-  if (!arguments.report.empty()) outputs.push_back(arguments.report);
-  std::set<std::string> seen;
-  for (const std::string& output : outputs) {
-    check_output_file(output, inputs_of(arguments));
-    if (!seen.insert(canonical_path(output)).second) {
-      throw IoError(output, "", "would be written twice; give the volumes or outputs other names");
-    }
-  }
+  check_output_files(files_to_write(arguments, plan.outputs()), inputs_of(arguments));
 }
 }  // namespace
 

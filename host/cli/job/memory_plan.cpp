@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "host/cli/job/output_files.hpp"
+#include "host/warp/box_sums.hpp"
 #include "io/files/memory.hpp"
 #include "kernels/base/hex_view.hpp"
 
@@ -161,9 +162,9 @@ bool plan_memory(VolumePlan& plan,
     source_bytes +=
         source_voxels * array.components * filter_bytes(arguments.warp.filter, array.type);
   }
-  // Owners of voxels, kept where voxels outside depend on them.
-  const bool keeps_owners =
-      extends(arguments.warp.outside) && !arguments.extra.contains(owner_output);
+  // Owners of voxels, kept where voxels outside or labels by Gaussian weights depend on them.
+  const bool keeps_owners = (extends(arguments.warp.outside) || takes_gaussian(arguments.warp)) &&
+                            !arguments.extra.contains(owner_output);
   const double samples = source_bytes + output_bytes + (keeps_owners ? 4 * output_voxels : 0);
   const double resident = resident_memory();
   const double limit = arguments.memory > 0

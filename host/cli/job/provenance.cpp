@@ -23,6 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// The file beside an output.
+std::string provenance_file(const std::string& output) {
+  return output + ".json";
+}
+
 Json facts_of(const std::string& role, const std::string& path) {
   std::error_code error;
   const std::string absolute = fs::absolute(path, error).string();
@@ -96,12 +101,22 @@ bool is_older(const std::string& file, const std::string& output) {
 }
 }  // namespace
 
+std::vector<std::string> files_to_write(const WarpArguments& arguments,
+                                        const std::vector<std::string>& outputs) {
+  std::vector<std::string> files = outputs;
+  if (arguments.provenance) {
+    for (const std::string& output : outputs) files.push_back(provenance_file(output));
+  }
+  if (!arguments.report.empty()) files.push_back(arguments.report);
+  return files;
+}
+
 ProvenanceState provenance_state(const WarpArguments& arguments,
                                  const std::vector<std::string>& outputs) {
   bool is_missing = false;
   Json inputs;
   for (const std::string& output : outputs) {
-    const Json facts = read_facts(output + ".json");
+    const Json facts = read_facts(provenance_file(output));
     std::error_code error;
     if (facts.is_null() || !fs::is_regular_file(output, error)) {
       is_missing = true;
@@ -128,7 +143,7 @@ void write_provenance(const WarpArguments& arguments,
                       const JobResult& result) {
   Json facts;
   for (const std::string& output : files) {
-    const std::string file = output + ".json";
+    const std::string file = provenance_file(output);
     if (!is_older(file, output)) continue;
     if (facts.is_null()) {
       facts = {{"tetwarp", TETWARP_VERSION},

@@ -16,6 +16,11 @@ enum class ProvenanceState {
   contradicts  ///< an output, an input, an option or the version is another one
 };
 
+/// The files that a job writes: its outputs, with --provenance the files beside them, and the
+/// report.
+std::vector<std::string> files_to_write(const WarpArguments& arguments,
+                                        const std::vector<std::string>& outputs);
+
 /// Compares sizes, SHA-256, options and the version. Options that change no value (threads, memory,
 /// reports) may differ, and inputs may have moved.
 /// @param outputs  of all steps and volumes of the job

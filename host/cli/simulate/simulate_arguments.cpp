@@ -133,6 +133,7 @@ void check_file_options(const SimulateArguments& arguments) {
 void check_pictures(const SimulateArguments& arguments) {
   const bool draws = arguments.draws || !arguments.film.empty();
   if (arguments.pictures.camera && !draws) refuse("--camera", "needs --picture or --film");
+  if (arguments.pictures.pixels && !draws) refuse("--pixels", "needs --picture or --film");
   if (!arguments.pictures.cast.empty() && !draws) refuse("--cast", "needs --picture or --film");
   check_camera(arguments.pictures);
 }
@@ -156,6 +157,9 @@ void check_complete(const SimulateArguments& arguments) {
   check_pictures(arguments);
   check_sampling(arguments.warp);
   if (!arguments.extra.empty() && !arguments.warps) refuse("--outputs", "needs --warp");
+  if (!arguments.grid.series.empty() && !arguments.warps && arguments.pictures.cast.empty()) {
+    refuse("--like-series", "needs --warp or --cast");
+  }
 }
 
 }  // namespace tetwarp::cli

@@ -15,8 +15,9 @@ namespace tetwarp::cli {
 
 ScenePictures::ScenePictures(const Simulator& simulator, const SimulateArguments& arguments)
     : simulator_(simulator), arguments_(arguments), looks_(simulator) {
-  options_.width = arguments.pictures.pixels[0];
-  options_.height = arguments.pictures.pixels[1];
+  const auto [width, height] = arguments.pictures.size();
+  options_.width = width;
+  options_.height = height;
   const double aspect = static_cast<double>(options_.width) / options_.height;
   options_.camera = arguments.pictures.camera ? view::camera_at(*arguments.pictures.camera)
                                               : view::scene_camera(simulator, aspect);
@@ -36,10 +37,12 @@ Image ScenePictures::draw(const std::vector<WarpedBody>& warped) {
   }
   std::vector<CastVolume> volumes;
   for (const WarpedBody& body : warped) {
-    const auto [range, is_new] = ranges_.try_emplace(body.source);
-    if (is_new) range->second = finite_range(*body.source);
-    volumes.push_back(
-        {&body.volume, transfer_of(arguments_.pictures, body.source->grid, range->second)});
+    const auto [colors, is_new] = colors_.try_emplace(body.source);
+    if (is_new) {
+      colors->second =
+          transfer_of(arguments_.pictures, body.source->grid, finite_range(*body.source));
+    }
+    volumes.push_back({&body.volume, colors->second});
     drawn.surfaces[body.body].triangles = {};
   }
   return cast_volumes(volumes, drawn.surfaces, drawn.planes, options_);

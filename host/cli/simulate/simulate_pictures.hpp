@@ -1,13 +1,13 @@
 /// @file simulate_pictures.hpp
 /// Pictures and films of the bodies of a simulation.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <tetwarp/cast.hpp>
 #include <tetwarp/film.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/simulate.hpp>
@@ -50,7 +50,7 @@ class ScenePictures {
   const SimulateArguments& arguments_;
   view::LookSurfaces looks_;
   SurfaceRenderOptions options_;
-  std::map<const Volume*, std::array<double, 2>> ranges_;  ///< of sources that are cast
+  std::map<const Volume*, TransferFunction> colors_;  ///< of sources that are cast
   std::optional<FilmWriter> film_;
   std::vector<std::string> paths_;
   double seconds_ = 0;

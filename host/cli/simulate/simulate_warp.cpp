@@ -20,6 +20,7 @@ BodyWarps::BodyWarps(const Simulator& simulator, const SimulateArguments& argume
     : simulator_(simulator), arguments_(arguments) {
   const std::vector<Body>& bodies = simulator.scene().bodies;
   const bool casts = !arguments.pictures.cast.empty();
+  const std::string option = arguments.warps ? "--warp: " : "--cast: ";
   bool any_is_written = false;
   std::vector<std::string> names;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -35,7 +36,7 @@ BodyWarps::BodyWarps(const Simulator& simulator, const SimulateArguments& argume
   if (followers_.empty() || (arguments.warps && !any_is_written)) {
     const std::string found = names.empty() ? "none is" : "those are " + listed(names);
     throw std::invalid_argument(
-        arguments.scene() + (arguments.warps ? ": --warp: " : ": --cast: ") +
+        arguments.scene() + ": " + option +
         (arguments.warped_body.empty() ? "no body" : "no body '" + arguments.warped_body + "'") +
         " made of a volume; " + found);
   }
@@ -43,7 +44,7 @@ BodyWarps::BodyWarps(const Simulator& simulator, const SimulateArguments& argume
     try {
       prepare(follower);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(bodies[follower.body].name + ": --warp: " + error.what());
+      throw std::invalid_argument(bodies[follower.body].name + ": " + option + error.what());
     }
   }
 }
@@ -85,7 +86,8 @@ std::vector<Volume> BodyWarps::extra_volumes(const Follower& follower) const {
 }
 
 void BodyWarps::write_frame(std::int64_t frame) {
-  warped_.resize(followers_.size());
+  const bool casts = !arguments_.pictures.cast.empty();
+  warped_.resize(casts ? followers_.size() : 0);
   for (std::size_t f = 0; f < followers_.size(); ++f) {
     Follower& follower = followers_[f];
     const Stopwatch warping;
@@ -104,7 +106,7 @@ void BodyWarps::write_frame(std::int64_t frame) {
                           [](double) { return !is_interrupted(); });
     warp_seconds_ += warping.seconds();
     if (follower.is_written) write(follower, warped, extra, frame);
-    warped_[f] = {follower.body, follower.source, std::move(warped)};
+    if (casts) warped_[f] = {follower.body, follower.source, std::move(warped)};
   }
 }
 

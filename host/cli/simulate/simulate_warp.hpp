@@ -33,7 +33,7 @@ class BodyWarps {
   /// Warps the state of the simulator and writes it. @throws Cancelled after an interrupt
   void write_frame(std::int64_t frame);
 
-  /// The volumes of the last frame.
+  /// The volumes of the last frame; none without --cast.
   const std::vector<WarpedBody>& warped() const { return warped_; }
   /// Files written so far.
   const std::vector<std::string>& paths() const { return paths_; }
@@ -64,7 +64,7 @@ class BodyWarps {
   const Simulator& simulator_;
   const SimulateArguments& arguments_;
   std::vector<Follower> followers_;
-  std::vector<WarpedBody> warped_;  ///< as followers_
+  std::vector<WarpedBody> warped_;  ///< as followers_; with --cast
   std::vector<std::string> paths_;
   double warp_seconds_ = 0, write_seconds_ = 0;
 };

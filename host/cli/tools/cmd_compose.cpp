@@ -1,4 +1,4 @@
-///   file cmd_compose.cpp
+/// @file cmd_compose.cpp
 /// The subcommand compose.
 #include <fmt/format.h>
 

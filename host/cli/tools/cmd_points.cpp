@@ -1,4 +1,4 @@
-///     file cmd_points.cpp
+/// @file cmd_points.cpp
 /// The subcommand points.
 #include <fmt/format.h>
 

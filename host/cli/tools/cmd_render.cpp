@@ -2,8 +2,12 @@
 /// The subcommand render.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tetwarp/cast.hpp>
 #include <tetwarp/film.hpp>
@@ -46,18 +50,32 @@ struct RenderArguments {
 class VolumePictures {
  public:
   explicit VolumePictures(const RenderArguments& arguments) : arguments_(arguments) {
-    if (!arguments.beside.empty())
-      beside_ = read_array(arguments.beside, arguments.array, {}, arguments.read_options());
+    if (arguments.beside.empty()) return;
+    const VolumeHeader header = read_volume_header(arguments.beside, arguments.read_options());
+    beside_is_series_ = header.times.size() > 1;
   }
 
-  Image draw(const Volume& volume) {
-    if (!arguments_.casts()) return draw_slices(volume);
+  /// @param step  of the volume; empty: no step is named
+  Image draw(const Volume& volume, std::optional<std::int64_t> step) {
+    if (!arguments_.casts()) {
+      read_beside(step);
+      return draw_slices(volume);
+    }
     if (!colors_) prepare_rays(volume);
     const CastVolume cast{&volume, *colors_};
     return cast_volumes({&cast, 1}, {}, {}, surfaces_);
   }
 
  private:
+  /// Reads the same step of the second volume; without --step the only one where it has one.
+  void read_beside(std::optional<std::int64_t> step) {
+    if (arguments_.beside.empty()) return;
+    if (!arguments_.step && !beside_is_series_) step.reset();
+    if (beside_ && beside_step_ == step) return;
+    beside_ = read_array(arguments_.beside, arguments_.array, step, arguments_.read_options());
+    beside_step_ = step;
+  }
+
   Image draw_slices(const Volume& volume) {
     if (!window_) window_ = with_window(volume, arguments_.render);
     std::vector<const Volume*> rows{&volume};
@@ -66,12 +84,18 @@ class VolumePictures {
   }
 
   void prepare_rays(const Volume& volume) {
-    const auto [low, high] = finite_range(volume);
-    colors_ =
-        transfer_of(arguments_.pictures, volume.grid,
-                    {arguments_.render.low.value_or(low), arguments_.render.high.value_or(high)});
-    surfaces_.width = arguments_.pictures.pixels[0];
-    surfaces_.height = arguments_.pictures.pixels[1];
+    const std::array<double, 2> found = finite_range(volume);
+    const auto &low = arguments_.render.low, &high = arguments_.render.high;
+    const std::array range{low.value_or(found[0]), high.value_or(found[1])};
+    const bool is_window = low || high;
+    if (is_window && !(range[0] < range[1])) {
+      throw std::invalid_argument(fmt::format(
+          "the colors would reach from {} to {}; give a --low below --high", range[0], range[1]));
+    }
+    colors_ = transfer_of(arguments_.pictures, volume.grid, range, is_window);
+    const auto [width, height] = arguments_.pictures.size();
+    surfaces_.width = width;
+    surfaces_.height = height;
     if (arguments_.pictures.camera) {
       surfaces_.camera = view::camera_at(*arguments_.pictures.camera);
       return;
@@ -89,7 +113,9 @@ class VolumePictures {
   }
 
   const RenderArguments& arguments_;
+  bool beside_is_series_ = false;
   std::optional<Volume> beside_;
+  std::optional<std::int64_t> beside_step_;  ///< as beside_ was read
   std::optional<RenderOptions> window_;
   std::optional<TransferFunction> colors_;
   SurfaceRenderOptions surfaces_;
@@ -128,7 +154,7 @@ int make_film(const RenderArguments& arguments) {
         arguments.step ? *arguments.step + 1 : std::max<std::int64_t>(steps, 1);
     for (std::int64_t step = arguments.step.value_or(0); step < last; ++step, ++count) {
       const Image image =
-          pictures.draw(read_array(path, arguments.array, step, arguments.read_options()));
+          pictures.draw(read_array(path, arguments.array, step, arguments.read_options()), step);
       if (!first) first = image;
       if (image.width != first->width || image.height != first->height) {
         throw IoError(path, "",
@@ -152,15 +178,34 @@ int run_render(const RenderArguments& arguments) {
   if (arguments.is_film()) return make_film(arguments);
   VolumePictures pictures(arguments);
   const Image image = pictures.draw(read_array(arguments.volumes.front(), arguments.array,
-                                               arguments.step, arguments.read_options()));
+                                               arguments.step, arguments.read_options()),
+                                    arguments.step);
   write_png(arguments.output, image);
   if (arguments.quiet) return 0;
   fmt::print("{} x {} pixels: {}\n", image.width, image.height, arguments.output);
   return 0;
 }
 
-void check_options(const RenderArguments& arguments) {
+void check_options(const RenderArguments& arguments, const CLI::App& command) {
+  const auto is_given = [&](const char* option) { return command.get_option(option)->count() > 0; };
+  const auto& render = arguments.render;
   check_camera(arguments.pictures);
+  if (arguments.pictures.casts_by_file() && (render.low || render.high)) {
+    throw CLI::ValidationError(render.low ? "--low" : "--high",
+                               "the file of --cast says which values it shows; leave it out");
+  }
+  if (arguments.casts() && render.low && render.high && !(*render.low < *render.high)) {
+    throw CLI::ValidationError("--low", "is not below --high");
+  }
+  if (arguments.casts() && is_given("--height")) {
+    throw CLI::ValidationError("--height", "is of slices; with --cast give --pixels");
+  }
+  if (!arguments.casts() && arguments.pictures.pixels) {
+    throw CLI::ValidationError("--pixels", "needs --cast; --height is of slices");
+  }
+  if (!arguments.is_film() && is_given("--seconds")) {
+    throw CLI::ValidationError("--seconds", "is of a film; name it .gif");
+  }
   if (arguments.casts() && !arguments.beside.empty()) {
     throw CLI::ValidationError("--beside", "is of slices; leave out --cast");
   }
@@ -214,8 +259,8 @@ void add_render_command(CLI::App& app, Run& run) {
       ->check(above_zero())
       ->type_name("S");
   add_quiet(*command, arguments->quiet);
-  command->callback([arguments, &run] {
-    check_options(*arguments);
+  command->callback([arguments, command, &run] {
+    check_options(*arguments, *command);
     run = [arguments] { return run_render(*arguments); };
   });
 }

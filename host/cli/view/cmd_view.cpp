@@ -186,7 +186,7 @@ void declare_screens(CLI::App& app, view::ViewOptions& options) {
       ->type_name("NAME");
 }
 
-void check_view(const view::ViewOptions& options) {
+void check_view(const view::ViewOptions& options, const CLI::App& command) {
   const bool has_limit = options.max_step_seconds < std::numeric_limits<double>::infinity();
   if (has_limit && !options.replay.empty()) {
     throw CLI::ValidationError(
@@ -198,6 +198,9 @@ void check_view(const view::ViewOptions& options) {
   }
   if (options.fingers && !((*options.fingers)[6] > 0)) {
     throw CLI::ValidationError("--fingers", "the radius, its last number, is above 0");
+  }
+  if (!options.fingers && command.get_option("--skin-stiffness")->count() > 0) {
+    throw CLI::ValidationError("--skin-stiffness", "needs --fingers");
   }
   if (!options.make_keys.empty() && !(options.join.empty() && options.screens.empty())) {
     throw CLI::ValidationError("--make-keys", "only writes keys; leave out --join and --screens");
@@ -252,8 +255,8 @@ void add_view_command(CLI::App& app, Run& run) {
   declare_simulation(*command, *options);
   declare_input(*command, *options);
   declare_screens(*command, *options);
-  command->callback([options, &run] {
-    check_view(*options);
+  command->callback([options, command, &run] {
+    check_view(*options, *command);
     run = [options] { return run_view(*options); };
   });
 }

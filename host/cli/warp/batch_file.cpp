@@ -12,6 +12,7 @@
 
 #include "host/cli/common/declare.hpp"
 #include "host/cli/warp/batch_list.hpp"
+#include "host/cli/warp/transform_job.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -144,6 +145,7 @@ class JobReader {
     const std::string& name = option.get_lnames().front();
     // With --batch, --report names the report of the whole batch.
     if (job.contains(name) || name == "report" || is_one_of(name, batch_options)) return {};
+    if (job.contains("transform") && !has_meaning_for_transforms(name)) return {};
     if (option.get_items_expected_max() == 0) return {"--" + name};
     return option_words(name, option.results());
   }

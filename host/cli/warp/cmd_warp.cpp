@@ -70,6 +70,10 @@ void add_warp_command(CLI::App& app, Run& run) {
       throw CLI::ValidationError("--resume",
                                  "with --provenance runs without mpirun; leave out one of the two");
     }
+    if (arguments->batch.empty() && launched_count() > 1 && names_transform(*arguments)) {
+      throw CLI::ValidationError("TRANSFORM",
+                                 "runs without mpirun; --threads divides a warp by a transform");
+    }
     run = [arguments, command] {
       return arguments->batch.empty() ? run_warp(*arguments) : run_batch(*arguments, *command);
     };

@@ -38,13 +38,8 @@ const std::string order = "the order is: tetwarp warp IMAGE FIELD -o OUT";
 
 /// Throws std::invalid_argument for options that have no meaning without a mesh.
 void check_options(const WarpArguments& arguments) {
-  const std::set<std::string> known{
-      "output",     "array",    "source-step", "axes",       "fsl",     "grid",      "like",
-      "dims",       "origin",   "spacing",     "direction",  "filter",  "overshoot", "outside",
-      "background", "compress", "threads",     "quiet",      "backend", "series",    "like-series",
-      "label-rule", "report",   "dry-run",     "provenance", "resume"};
   for (const auto& [name, values] : arguments.given) {
-    if (known.contains(name)) continue;
+    if (has_meaning_for_transforms(name)) continue;
     throw std::invalid_argument("--" + name + " is for warps by a mesh; leave it out");
   }
   if (arguments.resume && !arguments.provenance) {
@@ -163,14 +158,14 @@ double planned_memory(const Source& source, const ResampleOptions& options) {
   return resident_memory() + most;
 }
 
-/// Prints what the source loses.
-void print_left_out(const std::string& path, const VolumeHeader& header) {
-  print_notes(path, header.notes);
+/// What the source loses.
+Warnings notes_of(const std::string& path, const VolumeHeader& header) {
+  Warnings notes;
+  for (const std::string& note : header.notes) notes.push_back(path + ": " + note);
   std::vector<std::string> lost = header.not_read;
   lost.insert(lost.end(), header.left_out.begin(), header.left_out.end());
-  if (!lost.empty()) {
-    fmt::print(stderr, "tetwarp: {}: left out: {}\n", path, one_line(listed(lost)));
-  }
+  if (!lost.empty()) notes.push_back(path + ": left out: " + listed(lost));
+  return notes;
 }
 
 /// Resamples all steps, or plans them with --dry-run.
@@ -210,12 +205,24 @@ void resample_source(const WarpArguments& arguments,
   }
   writer.finish();
   result.written = 1;
-  print_left_out(path, source.header);
+  for (const std::string& note : notes_of(path, source.header)) {
+    if (context.shows_progress) fmt::print(stderr, "tetwarp: {}\n", one_line(note));
+    result.warnings.push_back(note);
+  }
   result.steps = fmt::format(
       "{} x {} x {} voxels{} by {}", grid.dims[0], grid.dims[1], grid.dims[2],
       source.is_series ? fmt::format(", {} steps", source.steps.size()) : "", file.convention);
 }
 }  // namespace
+
+bool has_meaning_for_transforms(const std::string& option) {
+  static const std::set<std::string> known{
+      "output",     "array",    "source-step", "axes",       "fsl",     "grid",      "like",
+      "dims",       "origin",   "spacing",     "direction",  "filter",  "overshoot", "outside",
+      "background", "compress", "threads",     "quiet",      "backend", "series",    "like-series",
+      "label-rule", "report",   "dry-run",     "provenance", "resume"};
+  return known.contains(option);
+}
 
 bool names_transform(const WarpArguments& arguments) {
   const std::string& last = arguments.files.back();
@@ -240,7 +247,7 @@ JobResult run_transform_job(const WarpArguments& arguments, const JobContext& co
   const std::vector<std::string> files = files_of_output(arguments.output, source.arrays);
   std::vector<std::string> inputs = arguments.files;
   if (arguments.grid.base != "same") inputs.push_back(arguments.grid.base);
-  for (const std::string& file : files) check_output_file(file, inputs);
+  check_output_files(files_to_write(arguments, files), inputs);
   JobResult result;
   result.outputs = {arguments.output};
   result.report.version = TETWARP_VERSION;

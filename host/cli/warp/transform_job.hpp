@@ -12,6 +12,10 @@ namespace tetwarp::cli {
 /// True when the last file is a transform.
 bool names_transform(const WarpArguments& arguments);
 
+/// False for options of warps by a mesh alone, which run_transform_job() refuses.
+/// @param option  its long name without dashes
+bool has_meaning_for_transforms(const std::string& option);
+
 /// The files that run_transform_job() writes. Throws IoError.
 std::vector<std::string> transform_job_files(const WarpArguments& arguments);
 

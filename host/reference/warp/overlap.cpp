@@ -151,7 +151,7 @@ std::vector<double> elected(const std::function<double(std::int64_t)>& label_of,
   }
   std::vector<double> labels(shares.size(), background);
   for (std::size_t v = 0; v < shares.size(); ++v) {
-    double covered = 0, most = 0;
+    double covered = 0, most = -1;  // below all shares
     for (const auto& [label, share] : shares[v]) covered += share;
     shares[v][background] += std::max(0.0, 1 - covered);
     for (const auto& [label, share] : shares[v]) {

@@ -226,7 +226,7 @@ class Sampler {
       }
     }
     T winner = background_;
-    double most = 0;
+    double most = -1;  // below all sums, so that the lowest label replaces the background
     for (const auto& [label, sum] : sums) {
       if (sum <= most + 8 * 0x1p-40) continue;
       most = sum;

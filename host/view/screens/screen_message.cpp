@@ -81,9 +81,12 @@ void check_message(const WelcomeMessage& message) {
   }
 }
 
-/// Samples and colors are shares, and samples do not fall.
+/// Samples and colors are shares, and samples go from 0 to 1 without a fall.
 void check_curve(const std::vector<ColorPoint>& curve) {
-  require(curve.empty() || (curve.size() >= 2 && curve.size() <= most_curve_points), "no curve");
+  if (curve.empty()) return;
+  require(curve.size() >= 2 && curve.size() <= most_curve_points && curve.front().value == 0 &&
+              curve.back().value == 1,
+          "no curve");
   double before = 0;
   for (const auto& [sample, color, opacity] : curve) {
     for (const double share : {sample, color[0], color[1], color[2], opacity}) {

@@ -48,7 +48,7 @@ struct ScreenLook {
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeColors::set_window()
   std::optional<Cut> cut = {};
-  std::vector<ColorPoint> curve = {};  ///< as VolumeColors::set_curve(); empty: there is no volume
+  std::vector<ColorPoint> curve = {};  ///< as VolumeColors::set_curve(); empty: nobody changed it
 
   bool operator==(const ScreenLook&) const = default;
 };

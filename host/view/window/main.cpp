@@ -113,15 +113,16 @@ void show_scene(const ViewOptions& options) {
   simulation->begin();
   window.run(signal_number);
   const std::string problem = window.failure();
-  if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   simulation->end();
   write_results(*simulation, options);
+  if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   if (options.timing) {
     print_timing(*simulation, window.picture_count(), start);
     if (!window.delay().text().empty()) std::puts(window.delay().text().c_str());
     if (screens) std::puts(screens->status().c_str());
   }
   if (!problem.empty()) throw std::runtime_error(options.scene() + ": " + problem);
+  if (!window.film_failure().empty()) throw std::runtime_error(window.film_failure());
 }
 
 void run(const ViewOptions& options) {

@@ -19,17 +19,18 @@ void MouseStyle::OnLeftButtonDown() {
 }
 
 void MouseStyle::OnLeftButtonUp() {
-  if (edits_) {
-    edits_ = false;
-  } else if (grabs_) {
+  if (grabs_) {
     grabs_ = false;
     actions_.release();
+  } else if (edits_) {
+    edits_ = false;
   } else {
     Superclass::OnLeftButtonUp();
   }
 }
 
 void MouseStyle::OnRightButtonDown() {
+  if (grabs_) return;
   const int* const place = GetInteractor()->GetEventPosition();
   edits_ = actions_.take_point(place[0], place[1], true);
   turns_ = !edits_ && actions_.turn_window(0, 0);

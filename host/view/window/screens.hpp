@@ -21,7 +21,7 @@ struct MasterView {
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeActors::set_window()
   std::optional<Cut> cut;
-  std::vector<ColorPoint> curve;  ///< of volumes, as VolumeActors::curve(); empty: there is none
+  std::vector<ColorPoint> curve;  ///< as VolumeActors::set_curve(); empty: nobody changed it
 };
 
 /// The master's end: serves all screens, and starts those of this machine.

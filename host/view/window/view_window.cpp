@@ -78,6 +78,7 @@ void ViewWindow::set_up_mouse() {
   actions.move_point = [this](int x, int y) {
     if (!curve_->move(x, y)) return;
     volumes_->set_curve(curve_->editor()->curve());
+    is_curve_changed_ = true;
     draw();
   };
   actions.press = [this](const std::string& key) { press(key); };
@@ -132,7 +133,7 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
   if (!options_.film.empty()) film_.begin(options_.film);
   events_->Start();
-  film_.end();
+  attempt([this] { film_.end(); });
 }
 
 /// The screens follow the camera and what is shown.
@@ -148,7 +149,7 @@ void ViewWindow::tell_screens() {
   view.level = level_;
   view.width = width_;
   view.cut = cut_;
-  if (curve_) view.curve = curve_->editor()->curve();
+  if (is_curve_changed_) view.curve = curve_->editor()->curve();
   screens_->set_view(view);
 }
 
@@ -268,12 +269,14 @@ void ViewWindow::turn_film() {
   });
 }
 
-/// The window goes on where it fails.
+/// The window goes on where it fails. What ended the film of the option is kept.
 void ViewWindow::attempt(const std::function<void()>& action) {
+  const bool has_film = film_.is_running() && film_.path() == options_.film;
   try {
     action();
   } catch (const std::exception& error) {
     note(error.what());
+    if (has_film && !film_.is_running() && film_failure_.empty()) film_failure_ = error.what();
   }
 }
 

@@ -50,6 +50,8 @@ class ViewWindow {
   const InputDelay& delay() const { return delay_; }
   /// What ended the simulation, or empty.
   std::string failure();
+  /// Why the film of the option is not complete, or empty.
+  const std::string& film_failure() const { return film_failure_; }
 
  private:
   void set_up_window();
@@ -103,7 +105,9 @@ class ViewWindow {
   std::string note_;
   std::optional<ValueLegend> legend_;
   std::optional<CurvePanel> curve_;
+  bool is_curve_changed_ = false;  ///< by the mouse
   WindowFilm film_;
+  std::string film_failure_;
   std::optional<DeviceHand> devices_;
   CutPlane cut_plane_;
   std::optional<Cut> cut_;

@@ -8,6 +8,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -76,6 +77,7 @@ std::array<bool, Polygon<size>::capacity> above_of_chains(const Polygon<size>& f
 }
 
 /// Cuts a polygon at a plane into the corners for which is_above(c) is true and the others.
+/// @pre there are at most max_count corners
 /// @param below  out; null: not wanted
 /// @returns how often the boundary crosses the plane
 template <int axis, int size, class IsAbove>
@@ -85,6 +87,7 @@ int cut_by(const Polygon<size>& from,
            Polygon<size>* below,
            Polygon<size>& above) {
   using Corner = typename Polygon<size>::Corner;
+  assert(from.count <= Polygon<size>::max_count);  // no array is overrun
   int below_count = 0, above_count = 0, crossings = 0;
   const Corner* last = &from.corner[from.count - 1];
   bool was_above = is_above(from.count - 1);
