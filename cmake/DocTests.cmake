@@ -29,4 +29,5 @@ add_test(NAME docs COMMAND ${tetwarp_docs_test} run ${PROJECT_SOURCE_DIR}
   "--has=$<$<BOOL:${TETWARP_HAS_VTK}>:vtk>"
   "--python=$<$<BOOL:${TETWARP_HAS_PYTHON}>:${Python_EXECUTABLE}>"
   --package ${PROJECT_BINARY_DIR}/python)
-set_tests_properties(docs PROPERTIES LABELS docs TIMEOUT 300 COST 20)  # starts early
+set_tests_properties(docs PROPERTIES LABELS docs TIMEOUT 300 RESOURCE_LOCK display
+  COST 20)  # starts early

@@ -176,13 +176,16 @@ tetwarp_discover(tetwarp_view_tests unit)
 if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
   add_test(NAME window COMMAND ${TETWARP_PYTHON3} -B
     ${PROJECT_SOURCE_DIR}/tests/view/check_window.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(window PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
+  # One at a time: displays in several namespaces may get the same number.
+  set_tests_properties(window PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
+    RESOURCE_LOCK display)
   if(TETWARP_HAS_SCREENS)
     add_test(NAME screens COMMAND ${TETWARP_PYTHON3} -B
       ${PROJECT_SOURCE_DIR}/tests/view/check_screens.py $<TARGET_FILE:tetwarp_command>)
     add_test(NAME network COMMAND ${TETWARP_PYTHON3} -B
       ${PROJECT_SOURCE_DIR}/tests/view/check_network.py $<TARGET_FILE:tetwarp_command>)
-    set_tests_properties(screens network PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300)
+    set_tests_properties(screens network PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
+      RESOURCE_LOCK display)
   endif()
 endif()
 
