@@ -69,7 +69,7 @@ struct SimulateOptions {
 
 /// Where SimulateOptions::max_step_seconds ended a step, in counts. A step from an equal state that
 /// ends there has the same bits, whatever time it takes, on the back end cpu with one thread:
-/// several threads end the sweeps of their islands at places that no count tells.
+/// with several threads each ends the sweeps of its own island, which these counts do not include.
 struct StepLimit {
   std::int64_t checks = -1;     ///< checks of the time before the one that ended the solves; -1:
                                 ///< none did

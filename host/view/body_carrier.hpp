@@ -29,7 +29,7 @@ class BodyCarrier {
   /// @param point  where the point that was taken is to be [world]
   void pull(const Point3& point);
   void let_go() { held_.reset(); }
-  /// The simulator has another state.
+  /// To be called after the state of the simulator was replaced.
   void reset();
   /// From the start [m].
   const Point3& displacement(std::size_t body) const { return displacements_[body]; }

@@ -23,7 +23,8 @@ class FingerPair {
   /// A scripted body is moved.
   /// @param displacement  from its start [m]
   void follow(std::size_t body, const Point3& displacement);
-  /// The simulator has another state. @param carrier  that knows it
+  /// To be called after the state of the simulator was replaced.
+  /// @param carrier  after its own reset()
   void reset(const BodyCarrier& carrier);
   /// The inner finger, where the skin holds it, and the force of the skin on it.
   /// @param carried  the body that the mouse carries

@@ -48,7 +48,7 @@ struct VoxelMajorityOp : BoxOverlaps {
     frame.set_voxel(voxel, x);
     const std::int64_t cell = frame.cell_of_voxel(x);
     if (is_kept(cell)) return;
-    constexpr double tie = 0x1p-16;  // rounding of nodes decides nothing
+    constexpr double tie = 0x1p-16;  // above the error of shares by the rounding of nodes
     output.set(voxel, label_of_largest_share(background, tie, [&](LabelShares& shares) {
                  shares.add(background, 0);
                  LabelSums sums(shares, rest_orientation);
@@ -60,8 +60,9 @@ struct VoxelMajorityOp : BoxOverlaps {
 
 /// Sets voxels to the label with the largest volume in their box, where the source's voxels are
 /// boxes that move with the tetrahedra. What no tetrahedron covers and what comes from beyond the
-/// source counts for the background. Shares of the box that differ by at most 2^-16 are equal, so
-/// that the rounding of nodes to 2^-20 voxel decides nothing: of equal ones the lowest label wins.
+/// source counts for the background. Shares of the box that differ by at most 2^-16 are equal,
+/// which is more than they change by the rounding of nodes to 2^-20 voxel: of equal ones the lowest
+/// label wins.
 ///
 /// Shares are exact but for rounding of float64 sums. Where tetrahedra overlap, their shares add
 /// up; those that are flat in one of the states have none.

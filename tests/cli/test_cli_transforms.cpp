@@ -135,7 +135,7 @@ TEST_F(CliTransforms, ReportsAndProvenanceReplaceNoOtherFile) {
   EXPECT_EQ(text_of(scene / "volume.vtkhdf"), volume);
 }
 
-/// What is left out is told, and with --quiet by the report alone.
+/// What is left out is printed and in the report; with --quiet it is in the report only.
 TEST_F(CliTransforms, ReportWhatTheyLeaveOut) {
   run({"compose", "mesh.vtkhdf", "-o", "field.vtkhdf", "--like", "volume.vtkhdf", "--steps", "3"});
   Volume volume = ramp_volume<float>();

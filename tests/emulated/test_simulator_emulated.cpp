@@ -99,7 +99,7 @@ TEST(SimulatorEmulated, StepsAllocateNothing) {
   EXPECT_EQ(take_calls().count(DeviceCall::allocate), 0);
 }
 
-/// The device tells which spins a step must resolve.
+/// The largest spin that a step must resolve is found on the device.
 TEST(SimulatorEmulated, SpinsOfBallsDivideNoSteps) {
   for (const Point3& radii : {Point3{0.1, 0.1, 0.1}, Point3{0.1, 0.1, 0.11}}) {
     Body ball = rigid_box("ball", {0.1, 0.1, 0.1}, {0, 0, 0});

@@ -273,8 +273,8 @@ TEST(GaussianLabels, OfAVeryWideOneAreTheLowest) {
   EXPECT_EQ(std::ranges::count(found, 3.0), std::ssize(found));
 }
 
-/// The same map as mesh and as transform. Nodes are rounded to 2^-20 voxel, which may decide
-/// between labels of almost equal weights.
+/// The same map as mesh and as transform. Nodes are rounded to 2^-20 voxel, so that labels
+/// of almost equal weights may differ.
 TEST(GaussianLabels, OfResampleAreThoseOfAWarp) {
   const Grid grid = scenes::unit_grid(14, 13, 12);
   const Volume source = blocks_of_labels(grid, 6);

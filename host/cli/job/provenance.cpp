@@ -87,7 +87,7 @@ Json contents_of(Json files) {
   return files;
 }
 
-/// The content of OUT.json; null if the file is missing or holds no JSON object.
+/// The object in OUT.json; null if the file is missing or holds something else.
 Json read_facts(const std::string& file) {
   std::ifstream stream(file);
   const Json facts = Json::parse(stream, nullptr, false);
