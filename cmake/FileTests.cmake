@@ -142,7 +142,8 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   host/cli/tools/chart.cpp
   tests/cli/test_cli_render.cpp
   tests/cli/test_cli_simulate_surfaces.cpp
-  tests/cli/test_cli_simulate_volumes.cpp)
+  tests/cli/test_cli_simulate_volumes.cpp
+  tests/cli/test_cli_field_memory.cpp)
 target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests
