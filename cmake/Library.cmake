@@ -103,8 +103,9 @@ tetwarp_sources(tetwarp host/warp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
   backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_plan.cpp
-  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp transform_links.cpp
-  voxel_places.cpp warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
+  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp
+  resample_blocks_cpu.cpp resample_part_cpu.cpp transform_links.cpp voxel_places.cpp
+  warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
   row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
   backend_${tetwarp_cuda} device_start_${tetwarp_cuda} map_points_${tetwarp_cuda})

@@ -9,7 +9,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, describe, integer_of, maker_of, nodes_of, number_of, out_of
+from ._arrays import cells_of, describe, integer_of, maker_of, nodes_of, number_of, out_of, pair_of
 from ._device import Device, on_device, type_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
@@ -124,6 +124,9 @@ class Warper:
     spacing, origin, direction, affine : of the grid of arrays, see Grid
     interpolator : ``"linear"``, ``"nearest"``, ``"cubic"``, ``"bspline"``, ``"lanczos"`` or
         ``"labels"`` (64-bit integers: ``"nearest"`` and ``"labels"`` only)
+    label_rule : the label of a voxel is that of most ``"linear"`` weight, of most exact
+        ``"volume"`` in its box, or of most ``"gaussian"`` weight, as of sitkLabelGaussian
+    label_gaussian : standard deviation [source voxel] and cutoff [standard deviation]
     default_value : of voxels that no cell covers
     outside : ``"background"``: they get `default_value`; ``"identity"``: the source at the same
         position; ``"nearest"``: the source displaced as the nearest point of the mesh's surface;
@@ -170,6 +173,8 @@ class Warper:
         direction: Any = None,
         affine: Any = None,
         interpolator: str = "linear",
+        label_rule: str = "linear",
+        label_gaussian: tuple[float, float] = (1.0, 1.0),
         default_value: float = 0.0,
         outside: str = "background",
         falloff: float = 0.0,
@@ -202,7 +207,9 @@ class Warper:
         self._warper: _core.Warper | None = _core.Warper(
             self._arrays, grid._core(), points,
             *cells_of(cells, "cells", len(points)),
-            interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
+            interpolator=interpolator, label_rule=label_rule,
+            label_gaussian=pair_of(label_gaussian, "label_gaussian"),
+            overshoot=overshoot, antialias=bool(antialias),
             intensity=intensity, quantities=_quantities_of(quantity, len(given)),
             outside=outside, falloff=number_of(falloff, "falloff"),
             default_value=number_of(default_value, "default_value"),
@@ -363,8 +370,8 @@ def warp(
     default_value : of voxels that no cell covers
     reference : Grid of the output, or something that has one; None: the grid of the source
     out, outputs, progress : see Warper.__call__
-    options : the other keywords of Warper: outside, falloff, overshoot, antialias, intensity,
-        quantity, backend, device, threads
+    options : the other keywords of Warper: label_rule, label_gaussian, outside, falloff, overshoot,
+        antialias, intensity, quantity, backend, device, threads
 
     Returns
     -------
