@@ -125,6 +125,13 @@ def number_of(value: Any, name: str) -> float:
         raise ValueError(f"{name}: expected a number, got {value!r}") from None
 
 
+def pair_of(value: Any, name: str) -> tuple[float, float]:
+    """Two numbers."""
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        raise ValueError(f"{name}: expected a pair of numbers, got {value!r}")
+    return number_of(value[0], name), number_of(value[1], name)
+
+
 def integer_of(value: Any, name: str) -> int:
     """A whole number; one with a fraction is refused, not cut."""
     try:

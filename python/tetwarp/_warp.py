@@ -16,6 +16,7 @@ from ._arrays import (
     maker_of,
     number_of,
     out_of,
+    pair_of,
     points_of,
     renamed,
     word_of,
@@ -87,6 +88,9 @@ class Warper:
     spacing, origin, direction, affine : of the grid of arrays, see Grid
     interpolator : ``"linear"``, ``"nearest"``, ``"cubic"``, ``"bspline"``, ``"lanczos"`` or
         ``"labels"`` (64-bit integers: ``"nearest"`` and ``"labels"`` only)
+    label_rule : the label of a voxel is that of most ``"linear"`` weight, of most exact
+        ``"volume"`` in its box, or of most ``"gaussian"`` weight, as of sitkLabelGaussian
+    label_gaussian : standard deviation [source voxel] and cutoff [standard deviation]
     default_value : of voxels that no cell covers
     outside : ``"background"``: they get `default_value`; ``"identity"``: the source at the same
         position; ``"nearest"``: the source displaced as the nearest point of the mesh's surface;
@@ -133,6 +137,8 @@ class Warper:
         direction: Any = None,
         affine: Any = None,
         interpolator: str = "linear",
+        label_rule: str = "linear",
+        label_gaussian: tuple[float, float] = (1.0, 1.0),
         default_value: float = 0.0,
         outside: str = "background",
         falloff: float = 0.0,
@@ -168,7 +174,9 @@ class Warper:
         try:
             self._warper: _core.Warper | None = _core.Warper(
                 self._arrays, grid._core(), points, *corners,
-                interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
+                interpolator=interpolator, label_rule=label_rule,
+                label_gaussian=pair_of(label_gaussian, "label_gaussian"),
+                overshoot=overshoot, antialias=bool(antialias),
                 intensity=intensity, quantities=_quantities_of(quantity, len(given)),
                 outside=outside, falloff=number_of(falloff, "falloff"),
                 default_value=number_of(default_value, "default_value"),
@@ -180,7 +188,8 @@ class Warper:
             check_finite(points, "rest")
             for part in corners:
                 check_indices(part, "cells", len(points))
-            for name, word in (("interpolator", interpolator), ("overshoot", overshoot),
+            for name, word in (("interpolator", interpolator), ("label_rule", label_rule),
+                               ("overshoot", overshoot),
                                ("intensity", intensity), ("outside", outside),
                                ("backend", backend)):
                 word_of(word, name)
@@ -345,8 +354,8 @@ def warp(
     default_value : of voxels that no cell covers
     reference : Grid of the output, or something that has one; None: the grid of the source
     out, outputs, progress : see Warper.__call__
-    options : the other keywords of Warper: outside, falloff, overshoot, antialias, intensity,
-        quantity, backend, device, threads
+    options : the other keywords of Warper: label_rule, label_gaussian, outside, falloff, overshoot,
+        antialias, intensity, quantity, backend, device, threads
 
     Returns
     -------
