@@ -174,7 +174,9 @@ class Warper:
         try:
             self._warper: _core.Warper | None = _core.Warper(
                 self._arrays, grid._core(), points, *corners,
-                interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
+                interpolator=interpolator, label_rule=label_rule,
+                label_gaussian=pair_of(label_gaussian, "label_gaussian"),
+                overshoot=overshoot, antialias=bool(antialias),
                 intensity=intensity, quantities=_quantities_of(quantity, len(given)),
                 outside=outside, falloff=number_of(falloff, "falloff"),
                 default_value=number_of(default_value, "default_value"),
@@ -187,7 +189,7 @@ class Warper:
             for part in corners:
                 check_indices(part, "cells", len(points))
             for name, word in (("interpolator", interpolator), ("label_rule", label_rule),
-                                ("overshoot", overshoot),
+                               ("overshoot", overshoot),
                                ("intensity", intensity), ("outside", outside),
                                ("backend", backend)):
                 word_of(word, name)
