@@ -149,6 +149,19 @@ TEST(CurveEditor, KeepsTheOrderOfItsPoints) {
   }
 }
 
+/// Screens get a curve only then.
+TEST(CurveEditor, IsEditedOnceAPointIsDraggedOrTinted) {
+  CurveEditor dragged(some_curve()), tinted(some_curve());
+  EXPECT_TRUE(dragged.edited().empty());
+  EXPECT_TRUE(dragged.hit(dragged.curve()[1].value, dragged.curve()[1].opacity));
+  EXPECT_TRUE(dragged.edited().empty());
+  dragged.drag(1, 0.3, 0.6);
+  tinted.tint(2, 0.1, 0);
+  EXPECT_EQ(dragged.edited().size(), dragged.curve().size());
+  EXPECT_EQ(dragged.edited()[1].opacity, 0.6);
+  EXPECT_EQ(tinted.edited()[2].color, tinted.curve()[2].color);
+}
+
 TEST(CurveEditor, FindsThePointUnderThePointer) {
   const CurveEditor editor(some_curve());
   for (std::size_t n = 0; n < editor.curve().size(); ++n) {
