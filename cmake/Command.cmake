@@ -5,8 +5,8 @@ tetwarp_sources(tetwarp_command host/cli
 tetwarp_sources(tetwarp_command host/cli/certify
   cmd_certify.cpp)
 tetwarp_sources(tetwarp_command host/cli/common
-  declare.cpp file_checks.cpp interrupt.cpp picture_options.cpp progress_bar.cpp ranks.cpp
-  ranks_${tetwarp_mpi}.cpp)
+  camera_option.cpp declare.cpp file_checks.cpp interrupt.cpp picture_options.cpp progress_bar.cpp
+  ranks.cpp ranks_${tetwarp_mpi}.cpp)
 tetwarp_sources(tetwarp_command host/cli/contact
   cmd_contact.cpp contact_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/job

@@ -163,6 +163,7 @@ endif()
 tetwarp_add_cli_tests(tetwarp_view_tests
   ${tetwarp_link_tests} ${tetwarp_gamepad_tests}
   tests/view/test_live_simulation.cpp
+  tests/view/test_look_surfaces.cpp
   tests/view/test_screen_messages.cpp
   tests/view/test_screens.cpp
   tests/view/test_view_colors.cpp

@@ -7,8 +7,8 @@ else()
 endif()
 add_library(tetwarp)
 tetwarp_sources(tetwarp host/base
-  backend.cpp error.cpp host_tasks.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp
-  repeated_cells.cpp report.cpp volume.cpp)
+  backend.cpp box_tree.cpp error.cpp host_tasks.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp
+  parallel.cpp repeated_cells.cpp report.cpp volume.cpp)
 tetwarp_sources(tetwarp host/collide
   body_partners.cpp certify.cpp collide_items.cpp exact_integer.cpp grid_plan.cpp known_hits.cpp
   moving_triangles.cpp near_planes.cpp self_clearance.cpp touch_areas.cpp)
@@ -64,8 +64,8 @@ tetwarp_sources(tetwarp host/simulate/contact_step
   contact_points.cpp contact_rest.cpp contact_step.cpp end_check.cpp expected_motion.cpp
   part_motion.cpp sleeping_contacts.cpp step_groups.cpp)
 tetwarp_sources(tetwarp host/simulate/model
-  body_points.cpp box_tree.cpp cloth.cpp fem.cpp image_materials.cpp material_finder.cpp model.cpp
-  motion.cpp nearest.cpp rigid.cpp scalar_entries.cpp springs.cpp surface_mesh.cpp tet_materials.cpp
+  body_points.cpp cloth.cpp fem.cpp image_materials.cpp material_finder.cpp model.cpp motion.cpp
+  nearest.cpp rigid.cpp scalar_entries.cpp springs.cpp surface_mesh.cpp tet_materials.cpp
   triangle_cloth.cpp)
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)

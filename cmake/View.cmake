@@ -5,8 +5,8 @@ tetwarp_sources(tetwarp_view_parts host/view
   body_carrier.cpp curve_editor.cpp finger_pair.cpp input_delay.cpp input_device.cpp
   input_log.cpp live_simulation.cpp live_start.cpp live_volumes.cpp look_surfaces.cpp
   obstacle_surface.cpp pick.cpp ray_quality.cpp scene_look.cpp simulated_device.cpp
-  surface_binding.cpp surface_values.cpp value_colors.cpp view_options.cpp view_scene.cpp
-  view_tools.cpp volume_colors.cpp)
+  surface_values.cpp value_colors.cpp view_options.cpp view_scene.cpp view_tools.cpp
+  volume_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/screens
   off_axis.cpp room.cpp room_file.cpp scene_sharer.cpp screen_keys.cpp screen_message.cpp
   shared_scene.cpp shared_state.cpp swap_group.cpp)

@@ -11,6 +11,11 @@
 
 namespace tetwarp {
 
+double tet_volume(const TetMesh& mesh, const std::array<std::int32_t, 4>& tet) {
+  return tet_volume(at(mesh.nodes, tet[0]), at(mesh.nodes, tet[1]), at(mesh.nodes, tet[2]),
+                    at(mesh.nodes, tet[3]));
+}
+
 LatticeFrame fitted_frame(const Bounds& bounds, const std::array<std::int64_t, 3>& cells) {
   LatticeFrame frame{cells, bounds.low, {}};
   for (std::size_t d = 0; d < 3; ++d) {
@@ -53,24 +58,17 @@ std::vector<std::int32_t> keep_tets(TetMesh& mesh, const std::vector<std::uint8_
   return number;
 }
 
-namespace {
-double volume_of(const TetMesh& mesh, const std::array<std::int32_t, 4>& tet) {
-  return tet_volume(at(mesh.nodes, tet[0]), at(mesh.nodes, tet[1]), at(mesh.nodes, tet[2]),
-                    at(mesh.nodes, tet[3]));
-}
-}  // namespace
-
 void map_nodes(TetMesh& mesh, const std::function<Point3(const Point3&)>& map) {
   for (Point3& node : mesh.nodes) node = map(node);
   for (auto& tet : mesh.tets) {
-    if (volume_of(mesh, tet) < 0) std::swap(tet[2], tet[3]);
+    if (tet_volume(mesh, tet) < 0) std::swap(tet[2], tet[3]);
   }
 }
 
 void orient_tets(const std::string& place, TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     auto& tet = mesh.tets[t];
-    const double volume = volume_of(mesh, tet);
+    const double volume = tet_volume(mesh, tet);
     if (volume == 0 || !std::isfinite(volume)) {
       fail_at(place, "tetrahedron " + std::to_string(t) + " (nodes " + std::to_string(tet[0]) +
                          ", " + std::to_string(tet[1]) + ", " + std::to_string(tet[2]) + ", " +

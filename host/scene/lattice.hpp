@@ -17,6 +17,9 @@ struct TetMesh {
   std::vector<std::array<std::int32_t, 4>> tets;
 };
 
+/// Volume of a tetrahedron, positive if its nodes are in right-handed order.
+double tet_volume(const TetMesh& mesh, const std::array<std::int32_t, 4>& tet);
+
 /// Boxes that fill `bounds` exactly.
 LatticeFrame fitted_frame(const Bounds& bounds, const std::array<std::int64_t, 3>& cells);
 

@@ -20,26 +20,6 @@ constexpr double smallest_fraction = 1e-3;
 constexpr double choice_resolution = 0.5;
 constexpr double volume_resolution = 0.25;
 
-/// Scales the fractions below 1 so that the volumes add up to that of the shape.
-void correct_total(const Shape& shape, const TetMesh& mesh, std::vector<double>& fraction) {
-  // Fractions that reach 1 leave a rest to the others.
-  for (int pass = 0; pass < 10; ++pass) {
-    double full = 0, partial = 0;
-    for (std::size_t t = 0; t < fraction.size(); ++t) {
-      const auto& [a, b, c, d] = mesh.tets[t];
-      const double volume =
-          tet_volume(at(mesh.nodes, a), at(mesh.nodes, b), at(mesh.nodes, c), at(mesh.nodes, d));
-      (fraction[t] < 1 ? partial : full) += fraction[t] * volume;
-    }
-    if (partial == 0) return;
-    const double factor = (volume_of(shape) - full) / partial;
-    if (std::abs(factor - 1) < 1e-15) return;
-    for (double& share : fraction) {
-      if (share < 1) share = std::min(1.0, factor * share);
-    }
-  }
-}
-
 /// Numbers of cells that fill a box with about `wanted` tetrahedra, cells nearly cubes: of those
 /// within rounding of cubes, a difference of a tenth of the tetrahedra weighs as much as edges that
 /// differ by a half.
@@ -71,6 +51,26 @@ std::array<std::int64_t, 3> cells_near(const Point3& length, std::int64_t wanted
   return best;
 }
 }  // namespace
+
+void scale_to_total(const TetMesh& mesh,
+                    double total,
+                    const std::array<double, 2>& between,
+                    std::vector<double>& fraction) {
+  const auto is_scaled = [&](double share) { return share > between[0] && share < between[1]; };
+  // Fractions that reach 1 leave a rest to the others.
+  for (int pass = 0; pass < 10; ++pass) {
+    double kept = 0, scaled = 0;
+    for (std::size_t t = 0; t < fraction.size(); ++t) {
+      (is_scaled(fraction[t]) ? scaled : kept) += fraction[t] * tet_volume(mesh, mesh.tets[t]);
+    }
+    if (scaled == 0) return;
+    const double factor = (total - kept) / scaled;
+    if (std::abs(factor - 1) < 1e-15) return;
+    for (double& share : fraction) {
+      if (is_scaled(share)) share = std::min(1.0, factor * share);
+    }
+  }
+}
 
 ShapeLattice make_filling_lattice(const std::string& place,
                                   const Bounds& bounds,
@@ -126,7 +126,7 @@ ShapeLattice make_shape_lattice(const std::string& place,
   ShapeLattice lattice{std::move(chosen.mesh), {}, {}};
   lattice.fraction =
       fractions_inside(shape, lattice.mesh, volume_resolution * feature_length(shape));
-  correct_total(shape, lattice.mesh, lattice.fraction);
+  scale_to_total(lattice.mesh, volume_of(shape), {0, 1}, lattice.fraction);
   for (std::size_t d = 0; d < 3; ++d) lattice.cells_across[d] = length[d] / chosen.frame.edge[d];
   return lattice;
 }

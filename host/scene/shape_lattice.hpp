@@ -1,6 +1,7 @@
 /// @file shape_lattice.hpp
 /// Lattices of five tetrahedra a cell in shapes, and the parts of tetrahedra inside shapes.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@ struct ShapeLattice {
   std::vector<double> fraction;
   Point3 cells_across{0, 0, 0};  ///< extent of the shape over the edges of cells
 };
+
+/// Multiplies the fractions strictly between two numbers by one factor, so that the volumes inside
+/// add up to a total. None goes beyond 1; what these lack others have more.
+void scale_to_total(const TetMesh& mesh,
+                    double total,
+                    const std::array<double, 2>& between,
+                    std::vector<double>& fraction);
 
 /// Cells that fill a box, nearly cubes if their edge or the number of tetrahedra is given.
 /// @param place  of the choice, for messages

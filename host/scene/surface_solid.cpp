@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <cstdint>
+#include <limits>
 
+#include "host/base/box_tree.hpp"
 #include "host/base/parallel.hpp"
 #include "host/scene/lattice_search.hpp"
 #include "host/scene/surface.hpp"
@@ -54,54 +56,39 @@ double volume_below(const ConvexPart& part, const Corners& triangle, double twic
   return now == nullptr ? 0 : sign * volume_of(*now);
 }
 
-/// The part of a tetrahedron within a surface. @param tet  its corners
-double volume_within(const Surface& surface, const std::array<Point3, 4>& tet) {
+/// The part of a tetrahedron within a surface. @param tree  of its triangles @param tet  corners
+double volume_within(const Surface& surface,
+                     const BoxTree& tree,
+                     const std::array<Point3, 4>& tet) {
   std::array<Point3, 4> corners{};
-  Bounds box;
+  Bounds column;  // all above the tetrahedron
   for (std::size_t c = 0; c < 4; ++c) {
     corners[c] = minus(tet[c], tet[0]);
-    box.include(corners[c]);
+    column.include(tet[c]);
   }
+  column.high[2] = std::numeric_limits<double>::infinity();
   const ConvexPart part = part_of(corners);
   double sum = 0;
-  for (const auto& [p, q, r] : surface.triangles) {
+  tree.visit(column, [&](std::int32_t t) {
+    const auto& [p, q, r] = at(surface.triangles, t);
     const Corners triangle{minus(at(surface.points, p), tet[0]),
                            minus(at(surface.points, q), tet[0]),
                            minus(at(surface.points, r), tet[0])};
-    bool is_apart = false;
-    for (std::size_t d = 0; d < 3; ++d) {
-      const auto [low, high] = std::minmax({triangle[0][d], triangle[1][d], triangle[2][d]});
-      is_apart |= high <= box.low[d] || (d < 2 && low >= box.high[d]);
-    }
-    if (is_apart) continue;
     const Point3 a = minus(triangle[1], triangle[0]), b = minus(triangle[2], triangle[0]);
     const double twice_area = a[0] * b[1] - a[1] * b[0];
     if (twice_area != 0) sum += volume_below(part, triangle, twice_area);
-  }
+  });
   return sum;
-}
-
-double volume_of(const TetMesh& mesh, std::size_t t) {
-  const auto& [a, b, c, d] = mesh.tets[t];
-  return tet_volume(at(mesh.nodes, a), at(mesh.nodes, b), at(mesh.nodes, c), at(mesh.nodes, d));
 }
 
 /// Raises fractions to the smallest one, and scales all others for it. Those raised sum to at most
 /// a hundredth of what is enclosed, so the factor is 0.99 to 1.
 void raise_small(const TetMesh& mesh, double enclosed, std::vector<double>& fraction) {
   double whole = 0;
-  for (std::size_t t = 0; t < fraction.size(); ++t) whole += volume_of(mesh, t);
+  for (const auto& tet : mesh.tets) whole += tet_volume(mesh, tet);
   const double smallest = least_part * enclosed / whole;
-  double raised = 0, scaled = 0;
-  for (std::size_t t = 0; t < fraction.size(); ++t) {
-    (fraction[t] <= smallest ? raised : scaled) +=
-        std::max(fraction[t], smallest) * volume_of(mesh, t);
-  }
-  if (raised == 0) return;
-  const double factor = (enclosed - raised) / scaled;
-  for (double& share : fraction) {
-    share = share <= smallest ? smallest : std::min(1.0, share * factor);
-  }
+  for (double& share : fraction) share = std::max(share, smallest);
+  scale_to_total(mesh, enclosed, {smallest, 2}, fraction);
 }
 }  // namespace
 
@@ -109,13 +96,15 @@ std::vector<double> fractions_within(const Surface& surface,
                                      const TetMesh& mesh,
                                      const std::vector<std::uint8_t>& is_cut) {
   std::vector<double> fractions(mesh.tets.size(), 1);
+  const BoxTree tree(boxes_of(surface.points, surface.triangles));
   parallel_tasks(thread_count(0), std::ssize(fractions), [&](std::int64_t index) {
     const auto t = static_cast<std::size_t>(index);
     if (!is_cut[t]) return;
     const auto& [a, b, c, d] = mesh.tets[t];
     const std::array<Point3, 4> tet{at(mesh.nodes, a), at(mesh.nodes, b), at(mesh.nodes, c),
                                     at(mesh.nodes, d)};
-    fractions[t] = std::clamp(volume_within(surface, tet) / volume_of(mesh, t), 0.0, 1.0);
+    fractions[t] =
+        std::clamp(volume_within(surface, tree, tet) / tet_volume(mesh, mesh.tets[t]), 0.0, 1.0);
   });
   return fractions;
 }

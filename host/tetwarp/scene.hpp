@@ -112,6 +112,12 @@ struct SceneOutput {
   std::vector<std::string> fields = {};    ///< velocity, stress, jacobian, contact
 };
 
+/// Another camera than the default one, for pictures and windows that ask for it.
+struct SceneCamera {
+  std::string name = {};
+  Camera camera = {};
+};
+
 struct Scene {
   double time_step = 0;  ///< [s], > 0
   double duration = 0;   ///< [s], >= 0
@@ -127,6 +133,7 @@ struct Scene {
   SceneOutput output = {};
   /// Default camera of pictures and windows; of no effect on the motion.
   std::optional<Camera> camera = {};
+  std::vector<SceneCamera> cameras = {};  ///< names differ; of no effect on the motion
   /// What reading its files has merged, a line for each file; of no effect.
   std::vector<std::string> notes = {};
 

@@ -45,13 +45,19 @@ std::optional<std::size_t> CurveEditor::hit(double x, double y) const {
   return nearest;
 }
 
+std::vector<ColorPoint> CurveEditor::edited() const {
+  return is_edited_ ? curve_ : std::vector<ColorPoint>();
+}
+
 void CurveEditor::drag(std::size_t point, double x, double y) {
+  is_edited_ = true;
   curve_[point].opacity = std::clamp(y, 0.0, 1.0);
   if (point == 0 || point + 1 == curve_.size()) return;
   curve_[point].value = std::clamp(x, curve_[point - 1].value, curve_[point + 1].value);
 }
 
 void CurveEditor::tint(std::size_t point, double hue, double saturation) {
+  is_edited_ = true;
   std::array<double, 3> hsv = hsv_of(curve_[point].color);
   hsv[0] += hue - std::floor(hsv[0] + hue);
   hsv[1] = std::clamp(hsv[1] + saturation, 0.0, 1.0);

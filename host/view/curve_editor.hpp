@@ -17,6 +17,8 @@ class CurveEditor {
   explicit CurveEditor(std::vector<ColorPoint> curve) : curve_(std::move(curve)) {}
 
   const std::vector<ColorPoint>& curve() const { return curve_; }
+  /// The curve once a point has been changed; empty before.
+  std::vector<ColorPoint> edited() const;
   /// The point next to a place, if it is near.
   std::optional<std::size_t> hit(double x, double y) const;
   /// Moves a point, not beyond its neighbors; the first and the last stay at their samples.
@@ -27,6 +29,7 @@ class CurveEditor {
 
  private:
   std::vector<ColorPoint> curve_;
+  bool is_edited_ = false;
 };
 
 }  // namespace tetwarp::view

@@ -38,7 +38,7 @@ struct LiveFrame {
   std::int64_t step = 0, tick = 0;  ///< of the scene; made in all
   double time = 0;                  ///< [s]
   std::vector<std::vector<Point3>>
-      points;                        ///< [bodies] of the surfaces, world; empty: of a failure
+      points;                        ///< [bodies] of what is drawn, world; empty: of a failure
   std::vector<VolumeFrame> volumes;  ///< [volumes], empty: not warped
   SurfaceQuantity quantity = SurfaceQuantity::none;
   std::vector<std::vector<float>> values;  ///< as SurfaceValues::of()

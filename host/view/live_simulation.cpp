@@ -37,10 +37,11 @@ LiveSimulation::LiveSimulation(Scene scene,
                                std::optional<InputLog> replay)
     : options_(options),
       simulator_(std::move(scene), simulate_options(options, replay)),
+      looks_(simulator_),
       fingers_(simulator_, options),
       volumes_(rest_volumes(simulator_), options, simulator_.backend()),
       carrier_(simulator_),
-      values_(simulator_),
+      values_(simulator_, looks_),
       quantity_(quantity_of(options.colors)),
       start_(first_state(options, simulator_)),
       replay_(std::move(replay)),
@@ -320,7 +321,7 @@ void LiveSimulation::publish() {
   fill(frame);
   frame.points.resize(simulator_.scene().bodies.size());
   for (std::size_t b = 0; b < frame.points.size(); ++b) {
-    frame.points[b] = simulator_.surface_positions(b);
+    frame.points[b] = looks_.positions(b);
   }
   frame.quantity = quantity_;
   frame.values = values_.of(quantity_);

@@ -20,6 +20,7 @@
 #include "host/view/input_log.hpp"
 #include "host/view/live_frame.hpp"
 #include "host/view/live_volumes.hpp"
+#include "host/view/look_surfaces.hpp"
 #include "host/view/triple_buffer.hpp"
 #include "host/view/view_options.hpp"
 
@@ -67,6 +68,8 @@ class LiveSimulation {
   /// Of the start; not to be used after begin().
   const Simulator& simulator() const { return simulator_; }
   const LiveVolumes& volumes() const { return volumes_; }
+  /// What is drawn of its bodies.
+  const LookSurfaces& looks() const { return looks_; }
   /// Called by the thread with every state, after each step and each order that changes it, with a
   /// frame that lacks points and volumes. To be set before begin().
   using Listener = std::function<void(const Simulator& simulator, const LiveFrame& frame)>;
@@ -113,6 +116,7 @@ class LiveSimulation {
 
   ViewOptions options_;
   Simulator simulator_;
+  LookSurfaces looks_;
   FingerPair fingers_;
   LiveVolumes volumes_;
   BodyCarrier carrier_;

@@ -1,5 +1,5 @@
 /// @file look_surfaces.cpp
-/// Weighted means of nodes.
+/// Surfaces that are boundaries of meshes, and others, as weighted means of nodes.
 #include "host/view/look_surfaces.hpp"
 
 #include <variant>
@@ -23,7 +23,19 @@ LookSurfaces::LookSurfaces(const Simulator& simulator)
   }
 }
 
+const Surface& LookSurfaces::drawn(std::size_t body) const {
+  return surfaces_[body] != nullptr ? *surfaces_[body] : simulator_.body(body).surface;
+}
+
+BoundPoints LookSurfaces::binding(std::size_t body) const {
+  if (bound_[body]) return *bound_[body];
+  const BodyMesh& own = simulator_.body(body);
+  const bool is_boundary = boundary_surface(own.mesh).points == own.surface.points;
+  return is_boundary ? bind_boundary(own.mesh) : bind_points(own.mesh, own.surface.points);
+}
+
 std::vector<Point3> LookSurfaces::positions(std::size_t body) const {
+  if (surfaces_[body] == nullptr) return simulator_.surface_positions(body);
   const std::vector<Point3> nodes = simulator_.node_positions(body);
   const BoundPoints& bound = *bound_[body];
   std::vector<Point3> points(bound.nodes.size(), Point3{0, 0, 0});

@@ -19,8 +19,12 @@ class LookSurfaces {
 
   /// Of a body, in the frame of its geometry; null: it has none.
   const Surface* of(std::size_t body) const { return surfaces_[body]; }
-  /// Where its points are now [world]. @pre of(body) is there
+  /// The surface that is drawn of a body: that for the eye, else the one that touches.
+  const Surface& drawn(std::size_t body) const;
+  /// Where its points are now [world].
   std::vector<Point3> positions(std::size_t body) const;
+  /// How its points follow the nodes. @pre the body has tetrahedra
+  BoundPoints binding(std::size_t body) const;
 
  private:
   const Simulator& simulator_;

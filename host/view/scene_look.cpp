@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "host/view/obstacle_surface.hpp"
 
@@ -83,7 +84,7 @@ Rgb color_of(std::size_t body) {
   return color;
 }
 
-SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces* looks) {
+SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces& looks) {
   SceneDrawing drawing;
   const Scene& scene = simulator.scene();
   for (const Obstacle& obstacle : scene.obstacles) {
@@ -93,13 +94,10 @@ SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces* looks) {
     }
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const bool has_look = looks != nullptr && looks->of(b) != nullptr;
-    drawing.points.push_back(has_look ? looks->positions(b) : simulator.surface_positions(b));
+    drawing.points.push_back(looks.positions(b));
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Surface* const look = looks != nullptr ? looks->of(b) : nullptr;
-    const Surface& surface = look != nullptr ? *look : simulator.body(b).surface;
-    drawing.surfaces.push_back({drawing.points[b], surface.triangles, color_of(b)});
+    drawing.surfaces.push_back({drawing.points[b], looks.drawn(b).triangles, color_of(b)});
   }
   for (const Surface& surface : drawing.obstacles) {
     drawing.surfaces.push_back({surface.points, surface.triangles, obstacle_color});
@@ -107,9 +105,10 @@ SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces* looks) {
   return drawing;
 }
 
-Camera scene_camera(const Simulator& simulator, double aspect) {
-  if (simulator.scene().camera) return *simulator.scene().camera;
-  const SceneDrawing drawn = drawing_of(simulator);
+namespace {
+/// Shows the whole scene, and where it will be if it falls.
+Camera camera_of_all(const Simulator& simulator, double aspect) {
+  const SceneDrawing drawn = drawing_of(simulator, LookSurfaces(simulator));
   std::vector<Point3> points;
   Box box;
   for (const DrawnSurface& surface : drawn.surfaces) {
@@ -123,6 +122,26 @@ Camera scene_camera(const Simulator& simulator, double aspect) {
     add_feet(box, drawn.planes, points);
   }
   return camera_of(points, aspect);
+}
+
+Camera camera_named(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.cameras, name, &SceneCamera::name);
+  if (found != scene.cameras.end()) return found->camera;
+  std::string names;
+  for (const SceneCamera& own : scene.cameras) names += (names.empty() ? "" : ", ") + own.name;
+  throw std::invalid_argument("camera '" + name + "' is not in the scene, which has " +
+                              (names.empty() ? "none with a name" : names));
+}
+}  // namespace
+
+Camera chosen_camera(const Simulator& simulator,
+                     const std::optional<std::array<double, 6>>& numbers,
+                     const std::string& name,
+                     double aspect) {
+  if (numbers) return camera_at(*numbers);
+  if (!name.empty()) return camera_named(simulator.scene(), name);
+  if (simulator.scene().camera) return *simulator.scene().camera;
+  return camera_of_all(simulator, aspect);
 }
 
 Camera camera_at(const std::array<double, 6>& numbers) {

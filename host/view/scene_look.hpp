@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <tetwarp/make.hpp>
@@ -28,12 +29,18 @@ struct SceneDrawing {
 };
 
 /// The state of a simulator, which must outlive the drawing.
-/// @param looks  of this simulator; null: bodies are drawn by what they touch with
-SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces* looks = nullptr);
+/// @param looks  of this simulator
+SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces& looks);
 
-/// The camera of a scene, or one that shows the whole scene, and where it will be if it falls.
+/// The camera of eye and target, or of a name in the scene; without both that of the scene, or one
+/// that shows the whole scene, and where it will be if it falls.
+/// @param name    empty: none
 /// @param aspect  width over height of the picture
-Camera scene_camera(const Simulator& simulator, double aspect);
+/// @throws std::invalid_argument  the scene has no camera of this name
+Camera chosen_camera(const Simulator& simulator,
+                     const std::optional<std::array<double, 6>>& numbers,
+                     const std::string& name,
+                     double aspect);
 
 /// A camera of an eye and a target, upright.
 /// @param numbers  x, y, z of the eye, then of the target

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "host/base/box_tree.hpp"
 #include "host/base/point3.hpp"
-#include "host/view/surface_binding.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -20,6 +21,27 @@ double volume_of(const Mesh& mesh, const std::array<std::int32_t, 4>& tet) {
   };
   for (std::size_t c = 0; c < 3; ++c) arm[c] = minus(corner(c + 1), corner(0));
   return std::abs(dot(arm[0], cross(arm[1], arm[2]))) / 6;
+}
+
+/// Of each point the nearest one of others.
+std::vector<std::size_t> nearest_points(const std::vector<Point3>& points,
+                                        const std::vector<Point3>& others) {
+  std::vector<Bounds> boxes;
+  for (const Point3& x : others) boxes.push_back({x, x});
+  const BoxTree tree(std::move(boxes));
+  std::vector<std::size_t> nearest;
+  for (const Point3& point : points) {
+    double reach = std::numeric_limits<double>::infinity();
+    std::int32_t found = 0;
+    tree.visit_near(point, reach, [&](std::int32_t item) {
+      const double distance = norm(minus(at(others, item), point));
+      if (distance >= reach) return;
+      reach = distance;
+      found = item;
+    });
+    nearest.push_back(static_cast<std::size_t>(found));
+  }
+  return nearest;
 }
 
 /// The points of a surface at which a body touches.
@@ -93,8 +115,7 @@ std::vector<std::vector<float>> SurfaceValues::stresses() {
   const bool is_first = bindings_.empty();
   for (std::size_t b = 0; b < bodies; ++b) {
     const BodyMesh& body = simulator_.body(b);
-    if (is_first)
-      bindings_.push_back(body.mesh.tets.empty() ? BoundPoints{} : surface_binding(body));
+    if (is_first) bindings_.push_back(body.mesh.tets.empty() ? BoundPoints{} : looks_.binding(b));
     if (body.mesh.tets.empty()) {
       values[b].assign(body.surface.points.size(), no_value);
     } else {
@@ -104,7 +125,7 @@ std::vector<std::vector<float>> SurfaceValues::stresses() {
   return values;
 }
 
-std::vector<std::vector<float>> SurfaceValues::of_contacts(SurfaceQuantity quantity) const {
+std::vector<std::vector<float>> SurfaceValues::of_contacts(SurfaceQuantity quantity) {
   const std::size_t bodies = simulator_.scene().bodies.size();
   std::vector<std::vector<float>> values(bodies);
   std::vector<std::vector<Point3>> points(bodies);
@@ -125,7 +146,22 @@ std::vector<std::vector<float>> SurfaceValues::of_contacts(SurfaceQuantity quant
     note(contact.body_a, contact.place_a);
     note(contact.body_b, contact.place_b);
   }
+  show_looks(values);
   return values;
+}
+
+/// Values of points that touch become those of points that are drawn.
+void SurfaceValues::show_looks(std::vector<std::vector<float>>& values) {
+  touching_.resize(values.size());
+  for (std::size_t b = 0; b < values.size(); ++b) {
+    if (looks_.of(b) == nullptr) continue;
+    if (touching_[b].empty()) {
+      touching_[b] = nearest_points(looks_.of(b)->points, simulator_.body(b).surface.points);
+    }
+    std::vector<float> shown;
+    for (const std::size_t p : touching_[b]) shown.push_back(values[b][p]);
+    values[b] = std::move(shown);
+  }
 }
 
 }  // namespace tetwarp::view

@@ -8,6 +8,8 @@
 #include <tetwarp/simulate.hpp>
 #include <tetwarp/surface.hpp>
 
+#include "host/view/look_surfaces.hpp"
+
 namespace tetwarp::view {
 
 enum class SurfaceQuantity : std::uint8_t { none, stress, gap, adhesion };
@@ -28,21 +30,29 @@ std::vector<float> surface_means(const Mesh& mesh,
 
 class SurfaceValues {
  public:
-  /// @param simulator  kept by the caller
-  explicit SurfaceValues(const Simulator& simulator) : simulator_(simulator) {}
+  /// @param simulator, looks  kept by the caller
+  SurfaceValues(const Simulator& simulator, const LookSurfaces& looks)
+      : simulator_(simulator), looks_(looks) {}
 
   /// Of the state now: von Mises stress [Pa] of bodies of tetrahedra; the smallest gap [m] and the
   /// largest adhesion intensity of the contacts at a point. Where a body does not touch with a
-  /// vertex, that is the one next to the contact.
-  /// @returns [bodies][points of the surface], not a number where there is no value; empty for none
+  /// vertex, that is the one next to the contact. Points of a surface for the eye have the values
+  /// of the nearest points, at rest, of the one that touches.
+  /// @returns [bodies][points of what is drawn], not a number where there is no value; empty for
+  ///          none
   std::vector<std::vector<float>> of(SurfaceQuantity quantity);
 
  private:
   std::vector<std::vector<float>> stresses();
-  std::vector<std::vector<float>> of_contacts(SurfaceQuantity quantity) const;
+  std::vector<std::vector<float>> of_contacts(SurfaceQuantity quantity);
+  void show_looks(std::vector<std::vector<float>>& values);
 
   const Simulator& simulator_;
-  std::vector<BoundPoints> bindings_;  ///< [bodies], made when they are first needed
+  const LookSurfaces& looks_;
+  // Made when they are first needed:
+  std::vector<BoundPoints> bindings_;  ///< [bodies]
+  /// [bodies][points of a surface for the eye]: the nearest point of the one that touches.
+  std::vector<std::vector<std::size_t>> touching_;
 };
 
 }  // namespace tetwarp::view

@@ -26,6 +26,7 @@ void visit_members(Options& of, const Visit& visit) {
   visit("width", of.width);
   visit("height", of.height);
   visit("camera", of.camera);
+  visit("camera_name", of.camera_name);
   visit("preset", of.preset);
   visit("colors", of.colors);
   visit("voxels", of.voxels);

@@ -23,6 +23,7 @@ struct ViewOptions {
   std::optional<std::int64_t> steps;            ///< then the window closes
   std::int64_t width = 960, height = 640;       ///< [pixel]
   std::optional<std::array<double, 6>> camera;  ///< eye, target
+  std::string camera_name;                      ///< of one of the scene, instead
   std::string preset = "ct";                    ///< colors of volumes: ct or mr
   std::string colors = "none";                  ///< of surfaces: stress, gap, adhesion
   std::int64_t voxels = 2'000'000;              ///< at most, of all warped volumes

@@ -19,11 +19,11 @@ ViewScene view_scene_of(const LiveSimulation& simulation, const ViewOptions& opt
   Bounds bounds;
   for (std::size_t b = 0; b < simulator.scene().bodies.size(); ++b) {
     scene.bodies.push_back(simulator.scene().bodies[b].name);
-    scene.triangles.push_back(simulator.body(b).surface.triangles);
-    for (const Point3& x : simulator.surface_positions(b)) bounds.include(x);
+    scene.triangles.push_back(simulation.looks().drawn(b).triangles);
+    for (const Point3& x : simulation.looks().positions(b)) bounds.include(x);
   }
   const double aspect = static_cast<double>(options.width) / static_cast<double>(options.height);
-  scene.camera = options.camera ? camera_at(*options.camera) : scene_camera(simulator, aspect);
+  scene.camera = chosen_camera(simulator, options.camera, options.camera_name, aspect);
   render_surfaces({}, {}, {scene.camera, 1, 1});  // throws on a camera that shows nothing
   if (bounds.high[0] >= bounds.low[0]) {
     scene.center = times(0.5, plus(bounds.low, bounds.high));

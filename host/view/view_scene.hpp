@@ -16,7 +16,7 @@ namespace tetwarp::view {
 struct ViewScene {
   std::string name;
   std::vector<std::string> bodies;   ///< names
-  std::vector<Triangles> triangles;  ///< [bodies] of the surfaces
+  std::vector<Triangles> triangles;  ///< [bodies] of what is drawn
   std::vector<Obstacle> obstacles;
   std::vector<VolumeBody> volumes;
   Camera camera;
@@ -26,7 +26,7 @@ struct ViewScene {
 };
 
 /// @param simulation  that has not begun
-/// @throws std::invalid_argument  the camera shows nothing
+/// @throws std::invalid_argument  the camera shows nothing, or is not in the scene
 ViewScene view_scene_of(const LiveSimulation& simulation, const ViewOptions& options);
 
 }  // namespace tetwarp::view

@@ -27,6 +27,10 @@ ScratchFile::~ScratchFile() {
   close(descriptor_);
 }
 
+std::string ScratchFile::path() const {
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(descriptor_);
+}
+
 bool read_at(int descriptor, void* out, std::size_t bytes, std::int64_t offset) {
   auto* to = static_cast<std::byte*>(out);
   while (bytes > 0) {

@@ -7,7 +7,7 @@
 
 namespace tetwarp {
 
-/// Bytes on a disk that only this process sees.
+/// Bytes on a disk without a name in a folder.
 class ScratchFile {
  public:
   /// @param beside  the file stands in for this one, in whose folder it takes its space and which
@@ -19,6 +19,8 @@ class ScratchFile {
   ~ScratchFile();
 
   int descriptor() const { return descriptor_; }
+  /// By which other processes of the user open it while this object lives.
+  std::string path() const;
 
  private:
   int descriptor_ = -1;

@@ -1,12 +1,9 @@
 /// @file coarse_surface.cpp
-/// Hands a surface over in a file that is removed afterwards.
+/// Hands a surface over in a file without a name.
 #include "io/import/coarse_surface.hpp"
-
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -17,55 +14,33 @@
 
 namespace tetwarp {
 namespace {
-/// A file of the temporary folder, removed with this object.
-class HandedFile {
- public:
-  explicit HandedFile(const std::string& beside)
-      : name_((std::filesystem::temp_directory_path() / "tetwarp-surface-XXXXXX").string()),
-        descriptor_(mkstemp(name_.data())),
-        beside_(beside) {
-    if (descriptor_ < 0) fail();
-  }
-  HandedFile(const HandedFile&) = delete;
-  HandedFile& operator=(const HandedFile&) = delete;
-  ~HandedFile() {
-    if (descriptor_ < 0) return;
-    close(descriptor_);
-    unlink(name_.c_str());
-  }
-
-  const std::string& name() const { return name_; }
-  template <class T>
-  void append(const T* items, std::size_t count) {
-    if (!write_at(descriptor_, items, count * sizeof(T), size_)) fail();
-    size_ += static_cast<std::int64_t>(count * sizeof(T));
-  }
-
- private:
-  [[noreturn]] void fail() const {
-    throw IoError(
-        beside_, "",
-        "the temporary folder cannot be written to: " + std::generic_category().message(errno));
-  }
-
-  std::string name_;
-  int descriptor_;
-  std::string beside_;
-  std::int64_t size_ = 0;
-};
+/// Writes a surface as tetwarp-read takes it. @returns false where there is no room
+bool write_surface(const Surface& surface, const ScratchFile& file) {
+  const std::uint64_t counts[2] = {surface.points.size(), surface.triangles.size()};
+  std::int64_t end = 0;
+  const auto append = [&](const auto* items, std::size_t count) {
+    const std::size_t bytes = count * sizeof *items;
+    const std::int64_t begin = end;
+    end += static_cast<std::int64_t>(bytes);
+    return write_at(file.descriptor(), items, bytes, begin);
+  };
+  return append(counts, 2) && append(surface.points.data(), surface.points.size()) &&
+         append(surface.triangles.data(), surface.triangles.size());
+}
 }  // namespace
 
 Surface coarse_surface(const std::string& path, const Surface& surface, double distance) {
-  HandedFile file(path);
-  const std::uint64_t counts[2] = {surface.points.size(), surface.triangles.size()};
-  file.append(counts, 2);
-  file.append(surface.points.data(), surface.points.size());
-  file.append(surface.triangles.data(), surface.triangles.size());
+  const ScratchFile file((std::filesystem::temp_directory_path() / "tetwarp-surface").string());
+  if (!write_surface(surface, file)) {
+    throw IoError(path, "",
+                  "the temporary folder has no room for its surface: " +
+                      std::generic_category().message(errno));
+  }
   std::ostringstream words;
   words << std::setprecision(17) << distance;
   Surface coarse;
   try {
-    run_reader(file.name(), {"coarsen", words.str()}, limits_for(file.name()), [&](auto& message) {
+    run_reader(file.path(), {"coarsen", words.str()}, limits_for(file.path()), [&](auto& message) {
       message(coarse.points);
       message(coarse.triangles);
     });

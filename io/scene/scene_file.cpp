@@ -57,15 +57,20 @@ SceneOutput read_output(const SceneValue& value) {
   return output;
 }
 
-Camera read_camera(const SceneValue& value) {
-  SceneObject object(value);
-  Camera camera;
+void read_camera(SceneObject& object, Camera& camera) {
   camera.eye = object.get("eye", "the place of the camera [x, y, z]").point();
   camera.target = object.get("target", "the place in the middle of the picture").point();
   object.read("up", camera.up);
   object.read("angle", camera.angle);
   object.finish();
-  return camera;
+}
+
+SceneCamera read_scene_camera(const SceneValue& value) {
+  SceneObject object(value);
+  SceneCamera own;
+  own.name = object.get("name", "the name by which options choose it").text();
+  read_camera(object, own.camera);
+  return own;
 }
 
 void read_bodies(SceneObject& object, SceneFiles& files, Scene& scene) {
@@ -127,7 +132,11 @@ Scene read_keys(const SceneValue& value, SceneFiles& files) {
   read_list(object, "loads", read_load, scene.loads);
   if (const auto solver = object.find("solver")) scene.solver = read_solver(*solver);
   if (const auto output = object.find("output")) scene.output = read_output(*output);
-  if (const auto camera = object.find("camera")) scene.camera = read_camera(*camera);
+  if (const auto camera = object.find("camera")) {
+    SceneObject own(*camera);
+    read_camera(own, scene.camera.emplace());
+  }
+  read_list(object, "cameras", read_scene_camera, scene.cameras);
   object.finish();
   return scene;
 }

@@ -131,6 +131,7 @@ TEST(RenderCommand, NamesWhatIsWrongInOneLine) {
       {{"a.vtkhdf", "-o", "x.png", "--cast", "--beside", "a.vtkhdf"}, "--beside"},
       {{"a.vtkhdf", "-o", "x.png", "--camera", "0,0,0,1,1,1"}, "needs --cast"},
       {{"a.vtkhdf", "-o", "x.png", "--cast", "--camera", "1,1,1,1,1,1"}, "the same point"},
+      {{"a.vtkhdf", "-o", "x.png", "--cast", "--camera", "inside"}, "only scenes have cameras"},
       {{"a.vtkhdf", "-o", "x.png", "--cast", "down.json"}, "points[1].value"},
       {{"a.vtkhdf", "-o", "x.png", "--cast", "opaque.json"}, "points[0]"},
       {{"a.vtkhdf", "-o", "x.png", "--cast", "none.json"}, "none.json"},

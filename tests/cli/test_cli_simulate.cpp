@@ -164,6 +164,33 @@ TEST(Simulate, DrawsPictures) {
   EXPECT_FALSE(fs::exists(scene.in("out", "scene_0002.png")));
 }
 
+/// A camera of the scene by its name shows what the same camera by its numbers shows.
+TEST(Simulate, DrawsFromACameraOfTheScene) {
+  const SimulateScene scene;
+  std::string text = text_of(scene / "scene.json");
+  text.insert(text.rfind('}'), R"(, "cameras": [
+    {"name": "side", "eye": [3, 0.2, 0.5], "target": [0.1, 0, 0]},
+    {"name": "narrow", "eye": [3, 0.2, 0.5], "target": [0.1, 0, 0], "angle": 0.1}])");
+  write_text(scene / "scene.json", text);
+  const auto picture = [&](const std::string& folder, Names words) {
+    words.insert(words.end(), {"-o", folder, "--picture", "--pixels", "60,40", "--steps", "0"});
+    const CommandResult result = scene.simulate(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return text_of(scene.in(folder, "scene_0000.png"));
+  };
+
+  const std::string side = picture("side", {"--camera", "side"});
+  EXPECT_EQ(side, picture("same", {"--camera", "3,0.2,0.5,0.1,0,0"}));
+  EXPECT_NE(side, picture("narrow", {"--camera", "narrow"}));
+  EXPECT_NE(side, picture("usual", {}));
+  const CommandResult missing = scene.simulate({"-o", "out", "--picture", "--camera", "front"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_NE(missing.err.find("camera 'front' is not in the scene, which has side, narrow"),
+            std::string::npos)
+      << missing.err;
+  EXPECT_FALSE(fs::exists(scene.in("out", "series.h5")));
+}
+
 TEST(Simulate, WritesAFilmOrNamesThePackageThatItNeeds) {
   const SimulateScene scene;
 

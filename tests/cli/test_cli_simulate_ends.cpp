@@ -214,6 +214,9 @@ TEST(SimulateErrors, OfUsageExitWith2) {
       {"scene.json", "-o", "out", "--checkpoint-every", "3"},
       {"scene.json", "-o", "out", "--film", "film.avi"},
       {"scene.json", "-o", "out", "--camera", "1,2,3"},
+      {"scene.json", "-o", "out", "--camera", "inside"},
+      {"scene.json", "-o", "out", "--picture", "--camera", "1,2,3,4,5,x"},
+      {"scene.json", "-o", "out", "--picture", "--camera", "1,2,3,4,5,inf"},
       {"scene.json", "-o", "out", "--picture", "--camera", "1,1,1,1,1,1"},
       {"scene.json", "-o", "out", "--backend", "abacus"}};
   for (const Names& words : cases) {

@@ -99,7 +99,9 @@ inline const char* const full_scene = R"({
   "solver": {"contact_tolerance": 1e-5, "linear_tolerance": 1e-8, "max_passes": 3,
     "max_substeps": 4, "law": "pyramid", "rule": "restrictive", "sleeping": true},
   "output": {"every": 5, "fields": ["velocity", "stress"]},
-  "camera": {"eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0], "angle": 0.75}
+  "camera": {"eye": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0], "angle": 0.75},
+  "cameras": [{"name": "inside", "eye": [7, 8, 9], "target": [1, 1, 1], "angle": 1.25},
+    {"name": "above", "eye": [0, 0, 9], "target": [0, 0, 0], "up": [1, 0, 0]}]
 })";
 
 /// The least that a scene can be.

@@ -36,6 +36,13 @@ TEST(SceneKeys, OfTheScene) {
   EXPECT_EQ(full().camera->target, (Point3{4, 5, 6}));
   EXPECT_EQ(full().camera->up, (Point3{0, 1, 0}));
   EXPECT_EQ(full().camera->angle, 0.75);
+  ASSERT_EQ(full().cameras.size(), 2u);
+  EXPECT_EQ(full().cameras[0].name, "inside");
+  EXPECT_EQ(full().cameras[0].camera.eye, (Point3{7, 8, 9}));
+  EXPECT_EQ(full().cameras[0].camera.target, (Point3{1, 1, 1}));
+  EXPECT_EQ(full().cameras[0].camera.up, (Point3{0, 0, 1}));
+  EXPECT_EQ(full().cameras[0].camera.angle, 1.25);
+  EXPECT_EQ(full().cameras[1].camera.up, (Point3{1, 0, 0}));
 }
 
 TEST(SceneKeys, HaveDefaults) {
@@ -50,6 +57,7 @@ TEST(SceneKeys, HaveDefaults) {
   EXPECT_EQ(scene.solver.max_substeps, 16);
   EXPECT_FALSE(scene.solver.pyramid || scene.solver.restrictive || scene.solver.sleeping);
   EXPECT_FALSE(scene.output.every || scene.camera);
+  EXPECT_TRUE(scene.cameras.empty());
   EXPECT_EQ(scene.output.rate, 30);
   const Body& ball = scene.bodies[0];
   EXPECT_TRUE(ball.collide);

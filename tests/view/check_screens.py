@@ -17,9 +17,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from check_window import SECONDS, Display, fail, pixels_of
+from check_window import SECONDS, Display, fail, pixels_of, press
 
 PIXELS = 240  # width and height of each screen
+WINDOW = (380, 340)  # width and height of the master's window in the test of the curve
 EYE, EYE_SEPARATION, FOCUS = (0.3, 1.2, 0.2), 0.3, 1.5
 CORNERS = {  # lower left, lower right, upper right of a cube of 3 m
     "left": ((-1.5, 0, 1.5), (-1.5, 0, -1.5), (-1.5, 3, -1.5)),
@@ -240,6 +241,56 @@ def check_room(command, environment, folder):
     check_pictures(folder)
 
 
+def curve_place(value, opacity):
+    """Pixel of a point of the curve in the master's window, from the upper left."""
+    width, height, margin = 240, 110, 12  # of the panel in the lower right corner
+    return (round(WINDOW[0] - margin - width * (1 - value)),
+            round(WINDOW[1] - 1 - margin - height * opacity))
+
+
+def changed_pixels(first, second):
+    return sum(max(abs(a - b) for a, b in zip(p, q)) > 20
+               for one, other in zip(first, second) for p, q in zip(one, other))
+
+
+def check_curve(command, environment, folder):
+    """The mouse takes a point of the curve of volumes to more opacity, then turns its hue: the point is
+    where it was released, in the color across the circle, and the volume looks different in the
+    master's window and on its screen. A click beside the points changes neither."""
+    x, y, z = TISSUE
+    (folder / "scene.json").write_text(
+        f"""{{"tetwarp_scene": 1, "time_step": 0.01, "duration": 1, "gravity": [0, 0, 0],
+              "camera": {{"eye": [{x}, {y - 0.3}, {z}], "target": [{x}, {y}, {z}]}},
+              "bodies": [{write_tissue(folder)}]}}""", encoding="ascii")
+    (folder / "room.json").write_text(
+        f"""{{"tetwarp_room": 1, "wait": 5, "address": "tcp://127.0.0.1:{free_port()}", "screens": [
+              {{"name": "front", "lower_left": [-0.3, -0.3, -1], "lower_right": [0.3, -0.3, -1],
+                "upper_right": [0.3, 0.3, -1], "window": [{WINDOW[0] + 20}, 0, 120, 120]}}]}}""",
+        encoding="ascii")
+    value, opacity, raised = 0.5, 0.08, 0.9  # a point of the preset ct, of a warm color
+    left, low = curve_place(value, opacity)
+    high = curve_place(value, raised)[1]
+    beside = curve_place(0.25, 0.7)
+    shown = []
+    for name, steps in (
+            ("click", f"mousemove {beside[0]} {beside[1]} mousedown 1 mousemove {left} {high} mouseup 1"),
+            ("drag", f"""mousemove {left} {low} mousedown 1 mousemove {left} {high} mouseup 1
+                         mousedown 3 mousemove {left - 100} {high} mouseup 3""")):
+        words = ["scene.json", "--screens", "room.json", "--paused", "--size",
+                 f"{WINDOW[0]},{WINDOW[1]}", "--screenshot", f"{name}.png"]
+        press(command, words, f"key o {steps}", environment, folder)
+        shown.append([pixels_of(folder / f"{name}{end}.png")[1] for end in ("", "_front")])
+    (clicked, clicked_front), (dragged, dragged_front) = shown
+    before, after = clicked[low][left], dragged[high][left]
+    if before[0] < 1.5 * before[2] or after[2] < 1.5 * after[0]:
+        fail(f"curve: its point was {before} and is {after}")
+    inner = slice(70, WINDOW[1] - 140)  # between the text and the panel
+    changed = [changed_pixels(clicked[inner], dragged[inner]),
+               changed_pixels(clicked_front, dragged_front)]
+    if min(changed) < 200:
+        fail(f"curve: {changed} pixels of the window and the screen have changed")
+
+
 def check_refusals(command, environment, folder):
     """Wrong input is one line and no process stays."""
     for words, expected in (
@@ -270,6 +321,7 @@ def main():
         with Display() as environment:
             check_refusals(command, environment, folder)
             check_room(command, environment, folder)
+            check_curve(command, environment, folder)
 
 
 if __name__ == "__main__":

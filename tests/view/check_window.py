@@ -65,6 +65,12 @@ def orange_pixels(path):
             if r > 60 and r > 1.5 * g and g > 1.4 * b]
 
 
+def foot_of(pixels):
+    """Those of the lowest row."""
+    lowest = max(y for _, y in pixels)
+    return [place for place in pixels if place[1] == lowest]
+
+
 class Display:
     """A server without a screen, gone at the end of the with block."""
 
@@ -91,6 +97,25 @@ def view(command, words, environment, folder):
                           capture_output=True, text=True)
 
 
+def press(command, words, steps, environment, folder):
+    """Views the scene at the upper left of the display while xdotool takes steps there, and ends by
+    the key q, which does not come up, since its window is gone by then. @returns what it prints"""
+    with subprocess.Popen([command, "view", *words], env=environment, cwd=folder,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as window:
+        try:
+            subprocess.run(
+                f"""xdotool search --sync --onlyvisible --name tetwarp:.scene.json windowmove %1 0 0
+                    windowfocus --sync %1 {steps} keydown q""".split(),
+                env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
+            printed, problems = window.communicate(timeout=SECONDS)
+            subprocess.run(["xdotool", "keyup", "q"], env=environment, timeout=SECONDS, check=True)
+        finally:
+            window.kill()
+    if window.returncode != 0 or problems:
+        fail(f"{' '.join(words)}: status {window.returncode}: {problems}")
+    return printed
+
+
 def check_without_display(command, folder):
     environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
     for shown in ({}, {"DISPLAY": ":987"}):
@@ -111,28 +136,14 @@ def check_picture(command, environment, folder):
 
 
 def check_pull(command, environment, folder, body):
-    """A drag with single steps; its record gives the same bits. The key that ends it does not come up,
-    since its window is gone by then."""
+    """A drag with single steps; its record gives the same bits."""
     x = sum(place[0] for place in body) // len(body)
     y = min(place[1] for place in body if place[0] == x) + 12
     words = ["scene.json", "--paused", "--size", "320,240", "--record", "input.txt",
              "--checkpoint", "first.bin"]
-    with subprocess.Popen([command, "view", *words], env=environment, cwd=folder,
-                          stderr=subprocess.PIPE, text=True) as window:
-        try:
-            subprocess.run(
-                f"""xdotool search --sync --onlyvisible --name tetwarp:.scene.json windowmove %1 0 0
-                    windowfocus --sync %1 mousemove {x} {y} mousedown 1
-                    mousemove {x + 40} {y - 10} key s mousemove {x + 60} {y - 20}
-                    key s key s mouseup 1 key s key s key x key i key comma key x keydown q""".split(),
-                env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
-            status = window.wait(SECONDS)
-            subprocess.run(["xdotool", "keyup", "q"], env=environment, timeout=SECONDS, check=True)
-        finally:
-            window.kill()
-        problems = window.stderr.read()
-        if status != 0 or problems:
-            fail(f"pull: status {status}: {problems}")
+    steps = f"""mousemove {x} {y} mousedown 1 mousemove {x + 40} {y - 10} key s
+        mousemove {x + 60} {y - 20} key s key s mouseup 1 key s key s key x key i key comma key x"""
+    press(command, words, steps, environment, folder)
     text = (folder / "input.txt").read_text(encoding="ascii")
     for word in (" grab block ", " move ", " release\n", "5 end\n"):
         if word not in text:
@@ -143,6 +154,29 @@ def check_pull(command, environment, folder, body):
         fail(f"replay: status {done.returncode}: {done.stderr}")
     if (folder / "first.bin").read_bytes() != (folder / "second.bin").read_bytes():
         fail("replay: another state than the recorded one")
+
+
+def check_right_button(command, environment, folder, body):
+    """During a pull the right button does nothing: the pull goes on to where the pointer is, and the
+    foot of the block, which is fixed, stays where it is in the picture, so that nothing has zoomed."""
+    x = sum(place[0] for place in body) // len(body)
+    y = min(place[1] for place in body if place[0] == x) + 12
+    words = ["scene.json", "--paused", "--size", "320,240", "--record", "right.txt", "--screenshot",
+             "right.png"]
+    steps = f"""mousemove {x} {y} mousedown 1 mousemove {x + 30} {y} key s mousedown 3
+        mousemove {x + 30} {y + 60} key s mouseup 3 mousemove {x + 40} {y} key s mouseup 1 key s"""
+    press(command, words, steps, environment, folder)
+    text = (folder / "right.txt").read_text(encoding="ascii")
+    lines = [line.split() for line in text.splitlines()]
+    moves = [[float(number) for number in words[2:]] for words in lines if words[1:2] == ["move"]]
+    counts = [sum(words[1:2] == [kind] for words in lines) for kind in ("grab", "release")]
+    if counts != [1, 1] or len(moves) < 2:
+        fail(f"right button: {counts} grabs and releases, {len(moves)} moves in\n{text}")
+    across = max(abs(way) for way in moves[-1][:2])
+    if across < 0.01 or abs(moves[-1][2]) > 0.2 * across:
+        fail(f"right button: the pull ends at {moves[-1]}, not beside where it began")
+    if foot_of(body) != foot_of(orange_pixels(folder / "right.png")):
+        fail("right button: the foot of the block is elsewhere in the picture")
 
 
 def check_colors(command, environment, folder):
@@ -215,6 +249,7 @@ def main():
         with Display() as environment:
             body = check_picture(command, environment, folder)
             check_pull(command, environment, folder, body)
+            check_right_button(command, environment, folder, body)
             check_device(command, environment, folder)
             check_film_failure(command, environment, folder)
             check_colors(command, environment, folder)

@@ -9,7 +9,7 @@
 
 #include "host/base/point3.hpp"
 #include "host/view/curve_editor.hpp"
-#include "host/view/surface_binding.hpp"
+#include "host/view/look_surfaces.hpp"
 #include "host/view/value_colors.hpp"
 #include "tests/view/live_scene.hpp"
 
@@ -21,7 +21,7 @@ using namespace view;
 TEST(SurfaceMeans, KeepConstantsAndExtremes) {
   const Simulator simulator(live_scene());
   const BodyMesh& body = simulator.body(0);
-  const BoundPoints binding = surface_binding(body);
+  const BoundPoints binding = LookSurfaces(simulator).binding(0);
   std::vector<double> values(body.mesh.tets.size(), 2.5);
   for (const float mean : surface_means(body.mesh, values, binding)) EXPECT_NEAR(mean, 2.5, 1e-6);
   std::mt19937 random(3);
@@ -42,7 +42,8 @@ TEST(SurfaceValues, AreThoseOfTheContactsNearby) {
   scene.contact.material.adhesion = AdhesionMaterial{
       .stiffness = 1e6, .energy = 0.1, .bonding_rate = 0.01, .saturation_pressure = 100};
   Simulator simulator(scene);
-  SurfaceValues values(simulator);
+  const LookSurfaces looks(simulator);
+  SurfaceValues values(simulator, looks);
   for (int n = 0; n < 40; ++n) simulator.step();
   const std::vector<ContactPoint> contacts = simulator.contacts();
   ASSERT_FALSE(contacts.empty());
@@ -147,6 +148,19 @@ TEST(CurveEditor, KeepsTheOrderOfItsPoints) {
       EXPECT_LE(part, 1);
     }
   }
+}
+
+/// Screens get a curve only then.
+TEST(CurveEditor, IsEditedOnceAPointIsDraggedOrTinted) {
+  CurveEditor dragged(some_curve()), tinted(some_curve());
+  EXPECT_TRUE(dragged.edited().empty());
+  EXPECT_TRUE(dragged.hit(dragged.curve()[1].value, dragged.curve()[1].opacity));
+  EXPECT_TRUE(dragged.edited().empty());
+  dragged.drag(1, 0.3, 0.6);
+  tinted.tint(2, 0.1, 0);
+  EXPECT_EQ(dragged.edited().size(), dragged.curve().size());
+  EXPECT_EQ(dragged.edited()[1].opacity, 0.6);
+  EXPECT_EQ(tinted.edited()[2].color, tinted.curve()[2].color);
 }
 
 TEST(CurveEditor, FindsThePointUnderThePointer) {

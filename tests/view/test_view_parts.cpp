@@ -74,6 +74,7 @@ TEST(ViewOptions, AreTheSameAfterTheirWords) {
   options.steps = 0;
   options.fingers = {{1, 2, 3, 4, 5, 6, 0.5}};
   options.camera = {{0.1, -2, 1e-30, 4, 5, 1.0 / 3}};
+  options.camera_name = "inside";
   options.grab_radius = 0.7;
   options.record = "input.txt";
   options.join = "tcp://master:5611";

@@ -1,8 +1,7 @@
 /// @file picture_options.cpp
-/// Cameras, sizes and transfer functions of pictures.
+/// Sizes and transfer functions of pictures.
 #include "host/cli/common/picture_options.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <tetwarp/transfer_file.hpp>
 #include <vector>
@@ -11,15 +10,7 @@
 
 namespace tetwarp::cli {
 
-void declare_picture_options(CLI::App& app,
-                             PictureOptions& options,
-                             const std::string& camera,
-                             const std::string& cast) {
-  app.add_option_function<std::array<double, 6>>(
-         "--camera", [&options](const std::array<double, 6>& numbers) { options.camera = numbers; },
-         "eye and target [" + camera + "]")
-      ->delimiter(',')
-      ->type_name("X,Y,Z,TX,TY,TZ");
+void declare_picture_options(CLI::App& app, PictureOptions& options, const std::string& cast) {
   app.add_option_function<std::array<int, 2>>(
          "--pixels", [&options](const std::array<int, 2>& numbers) { options.pixels = numbers; },
          "width and height of the pictures [960,640]")
@@ -32,17 +23,6 @@ void declare_picture_options(CLI::App& app,
          cast + ", in the colors of computed tomographies, gray, or as a JSON file says [ct]")
       ->expected(0, 1)
       ->type_name("[ct|mr|FILE.json]");
-}
-
-void check_camera(const PictureOptions& options) {
-  if (!options.camera) return;
-  const std::array<double, 6>& camera = *options.camera;
-  if (!std::ranges::all_of(camera, [](double number) { return std::isfinite(number); })) {
-    throw CLI::ValidationError("--camera", "a number is not finite");
-  }
-  if (std::equal(camera.begin(), camera.begin() + 3, camera.begin() + 3)) {
-    throw CLI::ValidationError("--camera", "the eye and what it looks at are the same point");
-  }
 }
 
 TransferFunction transfer_of(const PictureOptions& options,

@@ -8,12 +8,14 @@
 
 #include <tetwarp/cast.hpp>
 
+#include "host/cli/common/camera_option.hpp"
+
 namespace tetwarp::cli {
 
 /// As they were given.
 struct PictureOptions {
-  std::optional<std::array<double, 6>> camera;  ///< eye, target
-  std::optional<std::array<int, 2>> pixels;     ///< width, height
+  CameraOption camera;
+  std::optional<std::array<int, 2>> pixels;  ///< width, height
   /// How volumes are ray-cast: ct, mr, or the name of a file of a transfer function; empty: they
   /// are not.
   std::string cast;
@@ -23,16 +25,9 @@ struct PictureOptions {
   std::array<int, 2> size() const { return pixels.value_or(std::array{960, 640}); }
 };
 
-/// Declares --camera, --pixels and --cast.
-/// @param camera  what is shown without --camera
-/// @param cast    what --cast does
-void declare_picture_options(CLI::App& app,
-                             PictureOptions& options,
-                             const std::string& camera,
-                             const std::string& cast);
-
-/// Throws CLI::ValidationError on a camera that looks nowhere.
-void check_camera(const PictureOptions& options);
+/// Declares --pixels and --cast.
+/// @param cast  what --cast does
+void declare_picture_options(CLI::App& app, PictureOptions& options, const std::string& cast);
 
 /// The transfer function of --cast for a volume.
 /// @param range      of the values of the volume, for the presets

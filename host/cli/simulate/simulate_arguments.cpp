@@ -89,8 +89,8 @@ void declare_pictures(CLI::App& app, SimulateArguments& arguments) {
   app.add_flag("--picture", arguments.draws, "draw every output: scene_0000.png ...");
   app.add_option("--film", arguments.film, "write these pictures as an animated GIF")
       ->type_name("FILE.gif");
+  add_camera(app, arguments.pictures.camera, "that of the scene, or the whole scene at the start");
   declare_picture_options(app, arguments.pictures,
-                          "those of the scene, or the whole scene at the start",
                           "draw the volumes of bodies by rays in place of their surfaces");
 }
 
@@ -132,10 +132,10 @@ void check_file_options(const SimulateArguments& arguments) {
 
 void check_pictures(const SimulateArguments& arguments) {
   const bool draws = arguments.draws || !arguments.film.empty();
-  if (arguments.pictures.camera && !draws) refuse("--camera", "needs --picture or --film");
+  if (arguments.pictures.camera.is_given() && !draws)
+    refuse("--camera", "needs --picture or --film");
   if (arguments.pictures.pixels && !draws) refuse("--pixels", "needs --picture or --film");
   if (!arguments.pictures.cast.empty() && !draws) refuse("--cast", "needs --picture or --film");
-  check_camera(arguments.pictures);
 }
 }  // namespace
 

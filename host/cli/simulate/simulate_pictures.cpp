@@ -19,8 +19,8 @@ ScenePictures::ScenePictures(const Simulator& simulator, const SimulateArguments
   options_.width = width;
   options_.height = height;
   const double aspect = static_cast<double>(options_.width) / options_.height;
-  options_.camera = arguments.pictures.camera ? view::camera_at(*arguments.pictures.camera)
-                                              : view::scene_camera(simulator, aspect);
+  const CameraOption& camera = arguments.pictures.camera;
+  options_.camera = view::chosen_camera(simulator, camera.numbers, camera.name, aspect);
   render_surfaces({}, {}, {options_.camera, 1, 1});  // throws on a camera that shows nothing
   if (!arguments.film.empty()) FilmWriter::check_available(arguments.film);
   if (!arguments.pictures.cast.empty()) transfer_of(arguments.pictures, Grid{{1, 1, 1}}, {0, 1});
@@ -31,7 +31,7 @@ void ScenePictures::begin() {
 }
 
 Image ScenePictures::draw(const std::vector<WarpedBody>& warped) {
-  view::SceneDrawing drawn = view::drawing_of(simulator_, &looks_);
+  view::SceneDrawing drawn = view::drawing_of(simulator_, looks_);
   if (arguments_.pictures.cast.empty()) {
     return render_surfaces(drawn.surfaces, drawn.planes, options_);
   }

@@ -23,7 +23,7 @@ namespace tetwarp::cli {
 class ScenePictures {
  public:
   /// Chooses the camera from the state of the simulator, unless it is given. Writes nothing.
-  /// @throws std::invalid_argument  on a camera that shows nothing
+  /// @throws std::invalid_argument  on a camera that shows nothing, or is not in the scene
   /// @throws IoError                where this build cannot write films, and as transfer_of()
   ScenePictures(const Simulator& simulator, const SimulateArguments& arguments);
 

@@ -96,8 +96,8 @@ class VolumePictures {
     const auto [width, height] = arguments_.pictures.size();
     surfaces_.width = width;
     surfaces_.height = height;
-    if (arguments_.pictures.camera) {
-      surfaces_.camera = view::camera_at(*arguments_.pictures.camera);
+    if (arguments_.pictures.camera.numbers) {
+      surfaces_.camera = view::camera_at(*arguments_.pictures.camera.numbers);
       return;
     }
     std::vector<Point3> corners;
@@ -189,7 +189,6 @@ int run_render(const RenderArguments& arguments) {
 void check_options(const RenderArguments& arguments, const CLI::App& command) {
   const auto is_given = [&](const char* option) { return command.get_option(option)->count() > 0; };
   const auto& render = arguments.render;
-  check_camera(arguments.pictures);
   if (arguments.pictures.casts_by_file() && (render.low || render.high)) {
     throw CLI::ValidationError(render.low ? "--low" : "--high",
                                "the file of --cast says which values it shows; leave it out");
@@ -209,8 +208,11 @@ void check_options(const RenderArguments& arguments, const CLI::App& command) {
   if (arguments.casts() && !arguments.beside.empty()) {
     throw CLI::ValidationError("--beside", "is of slices; leave out --cast");
   }
-  if (!arguments.casts() && arguments.pictures.camera) {
+  if (!arguments.casts() && arguments.pictures.camera.is_given()) {
     throw CLI::ValidationError("--camera", "needs --cast");
+  }
+  if (!arguments.pictures.camera.name.empty()) {
+    throw CLI::ValidationError("--camera", "only scenes have cameras with names; give six numbers");
   }
 }
 }  // namespace
@@ -253,7 +255,10 @@ void add_render_command(CLI::App& app, Run& run) {
   command->add_option("--height", arguments->render.height, "height of a panel, in pixels [360]")
       ->check(between(16, 4096))
       ->type_name("N");
-  declare_picture_options(*command, arguments->pictures, "from the front, the right and above",
+  add_camera(*command, arguments->pictures.camera, "")
+      ->description("eye and target [from the front, the right and above]")
+      ->type_name("X,Y,Z,TX,TY,TZ");
+  declare_picture_options(*command, arguments->pictures,
                           "draw the volume by rays instead of slices");
   command->add_option("--seconds", arguments->seconds, "time of each picture of a film [0.1]")
       ->check(above_zero())

@@ -4,15 +4,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <tetwarp/scene_io.hpp>
 #include <vector>
 
+#include "host/cli/common/camera_option.hpp"
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
@@ -68,7 +71,22 @@ void set_scene(const std::string& scene, view::ViewOptions& options) {
   (is_name ? options.scene_name : options.scene_file) = scene;
 }
 
-void declare_picture(CLI::App& app, view::ViewOptions& options) {
+/// Declares an option of finite numbers with commas between them.
+template <std::size_t count>
+void add_numbers(CLI::App& app,
+                 const std::string& option,
+                 std::optional<std::array<double, count>>& numbers,
+                 const std::string& names,
+                 const std::string& description) {
+  app.add_option_function<std::array<double, count>>(
+         option, [&numbers](const std::array<double, count>& given) { numbers = given; },
+         description)
+      ->delimiter(',')
+      ->check(finite_number())
+      ->type_name(names);
+}
+
+void declare_picture(CLI::App& app, view::ViewOptions& options, CameraOption& camera) {
   app.add_option_function<std::array<std::int64_t, 2>>(
          "--size",
          [&options](const std::array<std::int64_t, 2>& size) {
@@ -79,12 +97,7 @@ void declare_picture(CLI::App& app, view::ViewOptions& options) {
       ->delimiter(',')
       ->check(between(64, 8192))
       ->type_name("W,H");
-  app.add_option_function<std::array<double, 6>>(
-         "--camera", [&options](const std::array<double, 6>& camera) { options.camera = camera; },
-         "eye and target [whole scene at the start]")
-      ->delimiter(',')
-      ->check(finite_number())
-      ->type_name("X,Y,Z,TX,TY,TZ");
+  add_camera(app, camera, "that of the scene, or the whole scene at the start");
   app.add_option("--preset", options.preset, "colors of volumes [ct]")
       ->check(CLI::IsMember({"ct", "mr"}).description(""))
       ->type_name("ct|mr");
@@ -130,20 +143,11 @@ void declare_input(CLI::App& app, view::ViewOptions& options) {
                  "of the spring to the mouse, N/m [from mass and stiffness of the body]")
       ->check(above_zero())
       ->type_name("K");
-  app.add_option_function<std::array<double, 4>>(
-         "--ball", [&options](const std::array<double, 4>& ball) { options.ball = ball; },
-         "center and radius of a ball to push with: the mouse carries it [none]")
-      ->delimiter(',')
-      ->check(finite_number())
-      ->type_name("X,Y,Z,R");
-  app.add_option_function<std::array<double, 7>>(
-         "--fingers",
-         [&options](const std::array<double, 7>& fingers) { options.fingers = fingers; },
-         "centers of an outer finger, which the mouse carries, and of an inner one, and their "
-         "radius [none]")
-      ->delimiter(',')
-      ->check(finite_number())
-      ->type_name("X,Y,Z,IX,IY,IZ,R");
+  add_numbers(app, "--ball", options.ball, "X,Y,Z,R",
+              "center and radius of a ball to push with: the mouse carries it [none]");
+  add_numbers(app, "--fingers", options.fingers, "X,Y,Z,IX,IY,IZ,R",
+              "centers of an outer finger, which the mouse carries, and of an inner one, and their "
+              "radius [none]");
   app.add_option("--skin-stiffness", options.skin_stiffness,
                  "of the spring between the fingers, N/m [500]")
       ->check(above_zero())
@@ -237,6 +241,7 @@ void check_view(const view::ViewOptions& options, const CLI::App& command) {
 
 void add_view_command(CLI::App& app, Run& run) {
   auto options = std::make_shared<view::ViewOptions>();
+  auto camera = std::make_shared<CameraOption>();
   CLI::App* command =
       add_subcommand(app, "view", "Watch a scene move in a window, and pull at it with the mouse",
                      "SCENE|NAME [options]",
@@ -251,11 +256,13 @@ void add_view_command(CLI::App& app, Run& run) {
           "SCENE", [options](const std::string& scene) { set_scene(scene, *options); },
           "scene file, or the name of a scene that ships with the command")
       ->type_name("");
-  declare_picture(*command, *options);
+  declare_picture(*command, *options, *camera);
   declare_simulation(*command, *options);
   declare_input(*command, *options);
   declare_screens(*command, *options);
-  command->callback([options, command, &run] {
+  command->callback([options, camera, command, &run] {
+    options->camera = camera->numbers;
+    options->camera_name = camera->name;
     check_view(*options, *command);
     run = [options] { return run_view(*options); };
   });

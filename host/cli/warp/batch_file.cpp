@@ -116,8 +116,9 @@ class JobReader {
     const std::string& name = option.get_lnames().front();
     if (!job.is_object()) return {};
     if (is_by_transform && name != "fsl") {
-      const bool has_provenance =
-          job.contains("provenance") || defaults_.get_option("--provenance")->count() > 0;
+      const bool has_provenance = job.contains("provenance")
+                                      ? job["provenance"] == true
+                                      : defaults_.get_option("--provenance")->count() > 0;
       return transform_refusal(name, option.results(), has_provenance);
     }
     for (const std::string& file : located_names(job, deformation_key(job))) {
@@ -129,8 +130,8 @@ class JobReader {
   }
 
   /// Throws IoError for a default that no job takes.
-  /// @param path             the batch file
-  /// @param are_by_transform of each job
+  /// @param path              the batch file
+  /// @param are_by_transform  of each job
   void check_defaults(const std::string& path,
                       const std::vector<Json>& jobs,
                       const std::vector<bool>& are_by_transform) const {

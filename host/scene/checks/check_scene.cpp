@@ -135,7 +135,7 @@ void check_load(const std::string& place, const Load& load, const SceneNames& na
   }
 }
 
-/// Names of couplings or handles, where they are given, differ.
+/// Names of couplings, handles or cameras, where they are given, differ.
 template <class Item>
 void check_names(const std::string& list, const std::vector<Item>& items) {
   std::set<std::string> names;
@@ -190,18 +190,28 @@ void check_output(const SceneOutput& output) {
   }
 }
 
-void check_camera(const Camera& camera) {
-  check_finite("camera.eye", camera.eye);
-  check_finite("camera.target", camera.target);
-  check_finite("camera.up", camera.up);
+void check_camera(const std::string& place, const Camera& camera) {
+  check_finite(key_of(place, "eye"), camera.eye);
+  check_finite(key_of(place, "target"), camera.target);
+  check_finite(key_of(place, "up"), camera.up);
   const Point3 line = minus(camera.target, camera.eye);
-  if (!(norm(line) > 0)) fail_at("camera.target", "is the place of the eye");
+  if (!(norm(line) > 0)) fail_at(key_of(place, "target"), "is the place of the eye");
   if (!(norm(cross(line, camera.up)) > 1e-9 * norm(line) * norm(camera.up))) {
-    fail_at("camera.up", "is along the line of sight, which leaves open what is upwards");
+    fail_at(key_of(place, "up"), "is along the line of sight, which leaves open what is upwards");
   }
   if (!(camera.angle > 0 && camera.angle < std::numbers::pi)) {
-    fail_at("camera.angle", "expected an angle of view above 0 and below pi");
+    fail_at(key_of(place, "angle"), "expected an angle of view above 0 and below pi");
   }
+}
+
+void check_cameras(const Scene& scene) {
+  if (scene.camera) check_camera("camera", *scene.camera);
+  for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
+    const std::string place = item_of("cameras", c);
+    check_name(key_of(place, "name"), scene.cameras[c].name);
+    check_camera(place, scene.cameras[c].camera);
+  }
+  check_names("cameras", scene.cameras);
 }
 }  // namespace
 
@@ -233,7 +243,7 @@ void check_scene(const Scene& scene) {
   check_pairs(scene.contact, names);
   check_solver(scene.solver);
   check_output(scene.output);
-  if (scene.camera) check_camera(*scene.camera);
+  check_cameras(scene);
 }
 
 }  // namespace tetwarp

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/base/box_tree.hpp"
 #include "host/base/point3.hpp"
-#include "host/simulate/model/box_tree.hpp"
 
 namespace tetwarp {
 

@@ -106,11 +106,11 @@ void add_load(const Load& load, const std::vector<Body>& bodies, Hash& hash) {
   hash.add(std::ranges::find(bodies, body, &Body::name) - bodies.begin());
 }
 
-/// Thickness, contact and couplings are in the surfaces and the model; duration, output and camera
+/// Thickness, contact and couplings are in the surfaces and the model; duration, output and cameras
 /// have no effect on a step.
 void add_scene(const Scene& scene, const SceneGeometry& geometry, Hash& hash) {
   const auto& [time_step, duration, gravity, thickness, bodies, obstacles, couplings, handles,
-               loads, contact, solver, output, camera, notes] = scene;
+               loads, contact, solver, output, camera, cameras, notes] = scene;
   hash.add(time_step, gravity);
   add_solver(solver, hash);
   for (const Body& body : bodies) add_body(body, hash);

@@ -77,7 +77,8 @@ void CondensedSolver::find_costs(const Limits& limits,
                                  const ContactShare& share) {
   for (Cost& cost : costs_) {
     const bool is_possible = cost.has_joined && (cost.has_friction || cost.has_elastic) &&
-                             cost.rows <= most_rows && cost.contacts <= limits.contacts;
+                             cost.rows <= most_rows && cost.contacts > 0 &&
+                             cost.contacts <= limits.contacts;
     cost.operations = is_possible ? 0 : limits.operations + 1;
   }
   const auto cost_of = [&](std::int32_t island) -> Cost& {
@@ -129,25 +130,47 @@ void CondensedSolver::take(const Limits& limits,
   from.contacts = std::move(left);
 }
 
+/// Factors and columns are kept as long as A is the same, as it is in the passes of a step.
 bool CondensedSolver::find_factors(const StepSystem& system, const ContactShare& share) {
   for (std::size_t i = 0; i < islands_.size(); ++i) {
     Island& own = islands_[i];
     if (share.islands[i] == 0) continue;
-    own.factors = system.factors != nullptr ? (*system.factors)[i].made() : nullptr;
-    if (own.factors != nullptr) continue;
-    own.factors = &own.lu;
-    if (!own.lu.factor(system.rows, system.values)) return false;
+    const double* const begin = system.values.data + 9 * std::int64_t{system.rows.start[own.begin]};
+    const double* const end = system.values.data + 9 * std::int64_t{system.rows.start[own.end]};
+    const bool is_same = std::equal(begin, end, own.values.begin(), own.values.end());
+    if (!is_same) {
+      own.values.assign(begin, end);
+      own.rows.clear();
+    }
+    RowRangeLu* const made = system.factors != nullptr ? (*system.factors)[i].made() : nullptr;
+    const bool is_kept = is_same && own.factors == &own.lu;
+    own.factors = made != nullptr ? made : &own.lu;
+    if (made != nullptr || is_kept) continue;
+    if (!own.lu.factor(system.rows, system.values)) {
+      own.values.clear();
+      return false;
+    }
   }
   return true;
 }
 
 void CondensedSolver::list_contacts(const ContactRows& rows, const ContactShare& share) {
-  for (Island& island : islands_) island.contacts.clear();
+  for (Island& island : islands_) {
+    island.contacts.clear();
+    std::swap(island.rows, island.kept_rows);
+    std::swap(island.columns, island.kept_columns);
+    island.rows.clear();
+  }
   for (std::size_t k = 0; k < share.contacts.size(); ++k) {
     const auto place = static_cast<std::int32_t>(k);
-    for_rows(rows, share.contacts[k], [&](std::int32_t island, std::int32_t, const double*) {
-      std::vector<std::int32_t>& own = islands_[index_of(island)].contacts;
-      if (own.empty() || own.back() != place) own.push_back(place);
+    for_rows(rows, share.contacts[k], [&](std::int32_t island, std::int32_t row, const double* j) {
+      Island& own = islands_[index_of(island)];
+      if (own.contacts.empty() || own.contacts.back() != place) {
+        own.contacts.push_back(place);
+        own.rows.emplace_back();
+      }
+      own.rows.back().push_back(row);
+      own.rows.back().insert(own.rows.back().end(), j, j + 9);
     });
   }
 }
@@ -167,19 +190,24 @@ void CondensedSolver::find_velocities(const StepSystem& system, const ContactSha
   }
 }
 
-void CondensedSolver::find_columns(const ContactRows& rows,
-                                   const ContactShare& share,
-                                   Island& island) {
+void CondensedSolver::find_columns(Island& island) const {
   const std::size_t size = 3 * index_of(island.end - island.begin);
   island.columns.assign(3 * island.contacts.size() * size, 0.0);
   double* column = island.columns.data();
-  for (const std::int32_t place : island.contacts) {
+  for (const std::vector<double>& own : island.rows) {
+    const auto kept = std::ranges::find(island.kept_rows, own);
+    if (kept != island.kept_rows.end()) {
+      const auto from = island.kept_columns.begin() +
+                        3 * static_cast<std::ptrdiff_t>(size) * (kept - island.kept_rows.begin());
+      column = std::copy_n(from, 3 * size, column);
+      continue;
+    }
     for (std::size_t axis = 0; axis < 3; ++axis, column += size) {
-      for_rows(rows, share.contacts[index_of(place)],
-               [&](std::int32_t i, std::int32_t row, const double* j) {
-                 if (&islands_[index_of(i)] != &island) return;
-                 std::copy_n(j + 3 * axis, 3, column + 3 * (row - island.begin));
-               });
+      for (std::size_t e = 0; e < own.size(); e += 10) {
+        const std::int64_t place = static_cast<std::int64_t>(own[e]) - island.begin;
+        std::copy_n(own.begin() + static_cast<std::ptrdiff_t>(e + 1 + 3 * axis), 3,
+                    column + 3 * place);
+      }
       island.factors->solve({column, size});
     }
   }
@@ -192,7 +220,7 @@ void CondensedSolver::set_matrix(const ContactRows& rows, const ContactShare& sh
   for (std::size_t i = 0; i < islands_.size(); ++i) {
     Island& own = islands_[i];
     if (share.islands[i] == 0 || own.contacts.empty()) continue;
-    find_columns(rows, share, own);
+    find_columns(own);
     const std::int64_t size = 3 * (own.end - own.begin);
     for (const std::int32_t d : own.contacts) {
       for (std::size_t k = 0; k < own.contacts.size(); ++k) {

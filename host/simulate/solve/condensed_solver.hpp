@@ -63,8 +63,12 @@ class CondensedSolver {
     std::int64_t begin = 0, end = 0;  ///< rows of the system
     RowRangeLu lu;
     RowRangeLu* factors = nullptr;       ///< of the linear solve, or `lu`
+    std::vector<double> values;          ///< of A, for which `factors` and columns have been made
     std::vector<std::int32_t> contacts;  ///< places in the share
-    std::vector<double> columns;         ///< A^-1 J^T, [3 contacts][3 rows]
+    std::vector<std::vector<double>> rows;  ///< [contacts] J: of each block its row, nine numbers
+    std::vector<double> columns;            ///< A^-1 J^T, [contacts][3][3 rows]
+    std::vector<std::vector<double>> kept_rows;  ///< of the last solve
+    std::vector<double> kept_columns;
   };
   /// Of a contact island; operations beyond the limits: it is not taken.
   struct Cost {
@@ -85,7 +89,7 @@ class CondensedSolver {
   bool find_factors(const StepSystem& system, const ContactShare& share);
   void list_contacts(const ContactRows& rows, const ContactShare& share);
   void find_velocities(const StepSystem& system, const ContactShare& share);
-  void find_columns(const ContactRows& rows, const ContactShare& share, Island& island);
+  void find_columns(Island& island) const;
   void set_matrix(const ContactRows& rows, const ContactShare& share);
   void set_problem(const ContactRows& rows, const ContactProblem& laws, const ContactShare& share);
   /// Calls visit(island, row, J) for the blocks with unknowns of a contact; J row by row.

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "host/base/point3.hpp"
-#include "host/view/surface_binding.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -33,10 +32,8 @@ std::size_t largest(const std::vector<Point3>& points, const Measure& measure) {
   return static_cast<std::size_t>(most - points.begin());
 }
 
-void bind_surface(const BodyMesh& mesh, SharedBody& body) {
+void bind_surface(BoundPoints bound, SharedBody& body) {
   body.form = BodyForm::nodes;
-  body.moving_count = static_cast<std::int64_t>(mesh.mesh.rest_positions.size());
-  BoundPoints bound = surface_binding(mesh);
   body.nodes = std::move(bound.nodes);
   body.weights = std::move(bound.weights);
 }
@@ -59,7 +56,8 @@ SceneSharer::SceneSharer(const LiveSimulation& simulation,
     auto& triad = triads_.emplace_back();
     body.triangles = scene.triangles[b];
     if (!mesh.mesh.tets.empty()) {
-      bind_surface(mesh, body);
+      body.moving_count = static_cast<std::int64_t>(mesh.mesh.rest_positions.size());
+      bind_surface(simulation.looks().binding(b), body);
     } else if (mesh.kind == BodyKind::rigid && points.size() >= 3) {
       const Point3 first = points[0];
       const std::size_t second =

@@ -14,7 +14,7 @@ namespace tetwarp::view {
 
 class SceneSharer {
  public:
-  /// @param simulation  that has not begun; only simulator() and volumes() are used
+  /// @param simulation  that has not begun; only simulator(), looks() and volumes() are used
   SceneSharer(const LiveSimulation& simulation, const ViewScene& scene, const ViewOptions& options);
 
   const SharedScene& scene() const { return scene_; }

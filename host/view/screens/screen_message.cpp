@@ -81,19 +81,19 @@ void check_message(const WelcomeMessage& message) {
   }
 }
 
-/// Samples and colors are shares, and samples go from 0 to 1 without a fall.
+/// Values and colors are shares, and values go from 0 to 1 without a fall.
 void check_curve(const std::vector<ColorPoint>& curve) {
   if (curve.empty()) return;
   require(curve.size() >= 2 && curve.size() <= most_curve_points && curve.front().value == 0 &&
               curve.back().value == 1,
           "no curve");
   double before = 0;
-  for (const auto& [sample, color, opacity] : curve) {
-    for (const double share : {sample, color[0], color[1], color[2], opacity}) {
+  for (const auto& [value, color, opacity] : curve) {
+    for (const double share : {value, color[0], color[1], color[2], opacity}) {
       require(share >= 0 && share <= 1, "no point of a curve");
     }
-    require(sample >= before, "points of a curve without order");
-    before = sample;
+    require(value >= before, "points of a curve without order");
+    before = value;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vtkPolyDataMapper2D.h>
 #include <vtkProperty2D.h>
 
+#include <array>
 #include <utility>
 
 namespace tetwarp::view {
@@ -97,7 +98,7 @@ bool CurvePanel::press(int x, int y, bool tints) {
 }
 
 bool CurvePanel::move(int x, int y) {
-  if (!held_) return false;
+  if (!held_ || last_ == std::array{x, y}) return false;
   const auto [share_x, share_y] = share_of(x, y);
   if (tints_) {
     editor_->tint(*held_, (x - last_[0]) / hue_pixels, (y - last_[1]) / hue_pixels);

@@ -10,6 +10,7 @@ namespace tetwarp::view {
 vtkStandardNewMacro(MouseStyle);
 
 void MouseStyle::OnLeftButtonDown() {
+  if (tints_ || turns_) return;
   vtkRenderWindowInteractor* const events = GetInteractor();
   const int* const place = events->GetEventPosition();
   const bool may_grab = events->GetShiftKey() == 0 && events->GetControlKey() == 0;
@@ -19,39 +20,45 @@ void MouseStyle::OnLeftButtonDown() {
 }
 
 void MouseStyle::OnLeftButtonUp() {
-  if (grabs_) {
-    grabs_ = false;
-    actions_.release();
-  } else if (edits_) {
-    edits_ = false;
-  } else {
-    Superclass::OnLeftButtonUp();
-  }
+  if (tints_ || turns_) return;
+  follow();
+  if (!edits_ && !grabs_) return Superclass::OnLeftButtonUp();
+  if (grabs_) actions_.release();
+  grabs_ = edits_ = false;
 }
 
 void MouseStyle::OnRightButtonDown() {
-  if (grabs_) return;
+  if (grabs_ || edits_) return;
   const int* const place = GetInteractor()->GetEventPosition();
-  edits_ = actions_.take_point(place[0], place[1], true);
-  turns_ = !edits_ && actions_.turn_window(0, 0);
-  if (!edits_ && !turns_) Superclass::OnRightButtonDown();
+  tints_ = actions_.take_point(place[0], place[1], true);
+  turns_ = !tints_ && actions_.turn_window(0, 0);
+  if (!tints_ && !turns_) Superclass::OnRightButtonDown();
 }
 
 void MouseStyle::OnRightButtonUp() {
-  if (!edits_ && !turns_) return Superclass::OnRightButtonUp();
-  edits_ = turns_ = false;
+  if (grabs_ || edits_) return;
+  follow();
+  if (!tints_ && !turns_) return Superclass::OnRightButtonUp();
+  tints_ = turns_ = false;
 }
 
 void MouseStyle::OnMouseMove() {
+  if (!follow()) Superclass::OnMouseMove();
+}
+
+/// Takes what the mouse holds to where the event was; also where a button was released, since X11
+/// may have left out the motion before. @returns whether it holds anything
+bool MouseStyle::follow() {
   const int* const place = GetInteractor()->GetEventPosition();
   const int* const before = GetInteractor()->GetLastEventPosition();
-  if (edits_) return actions_.move_point(place[0], place[1]);
-  if (grabs_) return actions_.pull(place[0], place[1]);
-  if (turns_) {
+  if (edits_ || tints_) {
+    actions_.move_point(place[0], place[1]);
+  } else if (grabs_) {
+    actions_.pull(place[0], place[1]);
+  } else if (turns_) {
     actions_.turn_window(place[0] - before[0], place[1] - before[1]);
-    return;
   }
-  Superclass::OnMouseMove();
+  return edits_ || grabs_ || tints_ || turns_;
 }
 
 void MouseStyle::OnKeyPress() {

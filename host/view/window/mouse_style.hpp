@@ -22,7 +22,8 @@ struct MouseActions {
 };
 
 /// Left drags what is under the pointer, a point of a curve too, or turns the camera; right drags
-/// the window of volumes, or zooms. Everything else is that of VTK's trackball: Shift and left or
+/// the window of volumes, or zooms; neither does anything while the other one holds something.
+/// Everything else is that of VTK's trackball: Shift and left or
 /// middle pan, Ctrl and left spins, the wheel zooms. Keys of VTK do nothing.
 class MouseStyle : public vtkInteractorStyleTrackballCamera {
  public:
@@ -40,8 +41,11 @@ class MouseStyle : public vtkInteractorStyleTrackballCamera {
   void OnChar() override {}
 
  private:
+  bool follow();
+
   MouseActions actions_;
-  bool grabs_ = false, turns_ = false, edits_ = false;
+  bool grabs_ = false, edits_ = false;  ///< by the left button
+  bool turns_ = false, tints_ = false;  ///< by the right one
 };
 
 }  // namespace tetwarp::view

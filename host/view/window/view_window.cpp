@@ -78,7 +78,6 @@ void ViewWindow::set_up_mouse() {
   actions.move_point = [this](int x, int y) {
     if (!curve_->move(x, y)) return;
     volumes_->set_curve(curve_->editor()->curve());
-    is_curve_changed_ = true;
     draw();
   };
   actions.press = [this](const std::string& key) { press(key); };
@@ -131,8 +130,9 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   draw();
   tell_screens();
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
-  if (!options_.film.empty()) film_.begin(options_.film);
+  if (!options_.film.empty()) film_.require(options_.film);
   events_->Start();
+  tell_screens();  // what the last events have changed
   attempt([this] { film_.end(); });
 }
 
@@ -149,7 +149,7 @@ void ViewWindow::tell_screens() {
   view.level = level_;
   view.width = width_;
   view.cut = cut_;
-  if (is_curve_changed_) view.curve = curve_->editor()->curve();
+  if (curve_) view.curve = curve_->editor()->edited();
   screens_->set_view(view);
 }
 
@@ -269,14 +269,12 @@ void ViewWindow::turn_film() {
   });
 }
 
-/// The window goes on where it fails. What ended the film of the option is kept.
+/// The window goes on where it fails.
 void ViewWindow::attempt(const std::function<void()>& action) {
-  const bool has_film = film_.is_running() && film_.path() == options_.film;
   try {
     action();
   } catch (const std::exception& error) {
     note(error.what());
-    if (has_film && !film_.is_running() && film_failure_.empty()) film_failure_ = error.what();
   }
 }
 

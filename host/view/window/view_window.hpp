@@ -51,7 +51,7 @@ class ViewWindow {
   /// What ended the simulation, or empty.
   std::string failure();
   /// Why the film of the option is not complete, or empty.
-  const std::string& film_failure() const { return film_failure_; }
+  const std::string& film_failure() const { return film_.failure(); }
 
  private:
   void set_up_window();
@@ -105,9 +105,7 @@ class ViewWindow {
   std::string note_;
   std::optional<ValueLegend> legend_;
   std::optional<CurvePanel> curve_;
-  bool is_curve_changed_ = false;  ///< by the mouse
   WindowFilm film_;
-  std::string film_failure_;
   std::optional<DeviceHand> devices_;
   CutPlane cut_plane_;
   std::optional<Cut> cut_;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <tetwarp/io.hpp>
 #include <utility>
 
@@ -20,29 +21,28 @@ void WindowFilm::begin(const std::string& path) {
   count_ = 0;
 }
 
+void WindowFilm::require(const std::string& path) {
+  begin(path);
+  is_required_ = true;
+}
+
 void WindowFilm::note(vtkRenderWindow* window) {
   if (!is_running() || (last_ && seen_.seconds() < least_seconds)) return;
   Image image = drawn_picture_of(window);
   if (last_ && (image.width != last_->width || image.height != last_->height)) return;
-  try {
+  attempt([this] {
     if (last_) write(*last_, seen_.seconds());
-  } catch (...) {
-    drop();
-    throw;
-  }
+  });
   last_ = std::move(image);
   seen_ = {};
 }
 
 void WindowFilm::end() {
   if (!is_running()) return;
-  try {
+  attempt([this] {
     if (last_) write(*last_, seen_.seconds());
     if (gif_) gif_->finish();
-  } catch (...) {
-    drop();
-    throw;
-  }
+  });
   drop();
 }
 
@@ -52,8 +52,20 @@ void WindowFilm::write(const Image& image, double seconds) {
   write_png(fmt::format("{}_{:04}.png", stem, count_++), image);
 }
 
+/// A film ends where it fails.
+void WindowFilm::attempt(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    if (is_required_) failure_ = error.what();
+    drop();
+    throw;
+  }
+}
+
 void WindowFilm::drop() {
   path_.clear();
+  is_required_ = false;
   gif_.reset();
   last_.reset();
 }

@@ -2,6 +2,7 @@
 /// WindowFilm: a film of what a window shows.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,9 @@ class WindowFilm {
  public:
   /// @param path  NAME.gif; or NAME.png for NAME_0000.png and so on
   void begin(const std::string& path);
+  /// As begin(), of a film that is needed: failure() keeps why it is not complete.
+  void require(const std::string& path);
+  const std::string& failure() const { return failure_; }
   bool is_running() const { return !path_.empty(); }
   /// Of the film that runs.
   const std::string& path() const { return path_; }
@@ -29,9 +33,11 @@ class WindowFilm {
 
  private:
   void write(const Image& image, double seconds);
+  void attempt(const std::function<void()>& action);
   void drop();
 
-  std::string path_;
+  std::string path_, failure_;
+  bool is_required_ = false;
   std::optional<FilmWriter> gif_;
   std::optional<Image> last_;  ///< not written yet: how long it is seen is not known
   Stopwatch seen_;             ///< since then

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "host/simulate/model/box_tree.hpp"
+#include "host/base/box_tree.hpp"
 #include "host/simulate/start/start_check.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
 #include "host/simulate/surfaces/surface_motion.hpp"

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <tetwarp/export.hpp>
+
 #include "host/base/point3.hpp"
 
 namespace tetwarp {
@@ -16,7 +18,7 @@ namespace tetwarp {
 /// boxes per item. Time: n log n.
 class BoxTree {
  public:
-  explicit BoxTree(std::vector<Bounds> boxes);
+  TETWARP_EXPORT explicit BoxTree(std::vector<Bounds> boxes);
 
   /// Calls visit(item) for all boxes that have a point in common with `box`, in an order that
   /// depends only on the boxes of the tree.

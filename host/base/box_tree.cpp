@@ -1,6 +1,6 @@
 /// @file box_tree.cpp
 /// Divides the boxes into halves along their longest extent.
-#include "host/simulate/model/box_tree.hpp"
+#include "host/base/box_tree.hpp"
 
 #include <algorithm>
 #include <numeric>
