@@ -31,7 +31,9 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_left_out.cpp
     tests/io/test_surface_files.cpp
     io/image/dicom_stack.cpp
-    io/reader/surface_seams.cpp)
+    io/reader/surface_seams.cpp
+    tests/io/test_mesh_import_gmsh.cpp
+    tests/io/test_mesh_import_vtk.cpp)
   # In place of tetwarp-read: ends as the tests want.
   add_executable(fake_reader tests/io/fake_reader.cpp)
   target_link_libraries(fake_reader PRIVATE tetwarp_reader tetwarp_options)
@@ -140,7 +142,8 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   host/cli/tools/chart.cpp
   tests/cli/test_cli_render.cpp
   tests/cli/test_cli_simulate_surfaces.cpp
-  tests/cli/test_cli_simulate_volumes.cpp)
+  tests/cli/test_cli_simulate_volumes.cpp
+  tests/cli/test_cli_field_memory.cpp)
 target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests

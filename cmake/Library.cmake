@@ -75,13 +75,13 @@ tetwarp_sources(tetwarp host/simulate/run
   simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
   step_records.cpp tet_energies.cpp turning_moments.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
-  contact_shares.cpp contact_system.cpp deformable_solver.cpp general_solver.cpp)
+  condensed_solver.cpp contact_shares.cpp contact_system.cpp deformable_solver.cpp general_solver.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem
   contact_constants.cpp contact_islands.cpp contact_laws.cpp contact_rows.cpp contact_sides.cpp
   step_laws.cpp step_problem.cpp step_rows.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/two_level
   compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp group_matrices.cpp
-  packed_contacts.cpp touching_blocks.cpp touching_matrix.cpp touching_newton.cpp
+  packed_contacts.cpp residual_check.cpp touching_blocks.cpp touching_matrix.cpp touching_newton.cpp
   touching_sweep.cpp two_level_solver.cpp two_level_start.cpp two_level_step.cpp
   two_level_sweeps.cpp unit_velocities.cpp)
 tetwarp_sources(tetwarp host/simulate/start
@@ -91,7 +91,7 @@ tetwarp_sources(tetwarp host/simulate/step
   cell_fields.cpp scene_drive.cpp scene_loads.cpp scene_record.cpp step_sums.cpp system_pattern.cpp
   ALONE reference_rows.cpp reference_stepper.cpp)
 tetwarp_sources(tetwarp host/simulate/step/cpu
-  block_lu.cpp island_factors.cpp rest_factor.cpp rest_factors.cpp rest_gradients.cpp rest_matrix.cpp
+  block_lu.cpp island_factors.cpp rest_factor.cpp rest_factors.cpp rest_gradients.cpp rest_matrix.cpp row_range_lu.cpp
   stepper_cpu.cpp vector_stages.cpp ALONE vector_stages_base.cpp)
 tetwarp_sources(tetwarp host/simulate/step/cuda
   stepper_${tetwarp_cuda})
@@ -103,8 +103,9 @@ tetwarp_sources(tetwarp host/warp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
   backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_plan.cpp
-  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp transform_links.cpp
-  voxel_places.cpp warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
+  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp
+  resample_blocks_cpu.cpp resample_part_cpu.cpp transform_links.cpp voxel_places.cpp
+  warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
   row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
   backend_${tetwarp_cuda} device_start_${tetwarp_cuda} map_points_${tetwarp_cuda})

@@ -50,8 +50,8 @@ if(TETWARP_BUNDLE)
 endif()
 
 set(tetwarp_python_files __init__.py _arrays.py _autograd.py _bridges.py _certify.py _contact.py
-  _device.py _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _simulate.py _tracker.py _volume.py
-  _warp.py py.typed)
+  _device.py _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _packages.py _result.py _simulate.py _tracker.py
+  _volume.py _warp.py py.typed)
 file(MAKE_DIRECTORY ${tetwarp_package})
 foreach(file IN LISTS tetwarp_python_files)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/tetwarp/${file} ${tetwarp_package}/${file} SYMBOLIC)
@@ -64,15 +64,9 @@ nanobind_add_stub(tetwarp_python_stub MODULE _core PYTHON_PATH ${tetwarp_package
 
 if(SKBUILD)
   # Everything lies in the package: module and command search the reader beside them.
-  set(tetwarp_wheel tetwarp_python tetwarp_command tetwarp_read)
-  set_target_properties(${tetwarp_wheel} PROPERTIES INSTALL_RPATH "$ORIGIN/lib")
-  install(TARGETS ${tetwarp_wheel} RUNTIME_DEPENDENCY_SET tetwarp_wheel_libraries
+  install(TARGETS tetwarp_python tetwarp_command tetwarp_read
     LIBRARY DESTINATION tetwarp COMPONENT python RUNTIME DESTINATION tetwarp COMPONENT python)
   install(FILES ${tetwarp_package}/_core.pyi DESTINATION tetwarp COMPONENT python)
   install(PROGRAMS python/command.py DESTINATION ${SKBUILD_SCRIPTS_DIR} RENAME tetwarp
     COMPONENT python)
-  if(TETWARP_BUNDLE)
-    install(RUNTIME_DEPENDENCY_SET tetwarp_wheel_libraries DESTINATION tetwarp/lib COMPONENT python
-      PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|libgcc_s|libstdc\\+\\+|ld-linux-.*)\\.so")
-  endif()
 endif()

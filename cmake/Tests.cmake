@@ -154,7 +154,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_arguments.cpp
     tests/warp/test_warp_filters.cpp
     tests/warp/test_warp_invariance.cpp
-    tests/make/test_cast_volumes.cpp)
+    tests/make/test_cast_volumes.cpp
+    tests/warp/test_resample_blocks.cpp)
   target_link_libraries(tetwarp_tests PRIVATE tetwarp_hwy)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)

@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -150,6 +151,8 @@ void make_array_warper(ArrayWarper* self,
                        const InTets& tets,
                        const InHexes& hexes,
                        const std::string& interpolator,
+                       const std::string& label_rule,
+                       const std::array<double, 2>& label_gaussian,
                        const std::string& overshoot,
                        bool antialias,
                        const std::string& intensity,
@@ -162,6 +165,8 @@ void make_array_warper(ArrayWarper* self,
                        int device,
                        int threads) {
   WarpOptions options{.filter = choice<Filter>("interpolator", interpolator),
+                      .label_rule = choice<LabelRule>("label_rule", label_rule),
+                      .label_gaussian = {label_gaussian[0], label_gaussian[1]},
                       .overshoot = choice<Overshoot>("overshoot", overshoot),
                       .antialias = antialias,
                       .intensity = choice<Intensity>("intensity", intensity),
@@ -183,9 +188,10 @@ void bind_warp(nb::module_& module) {
   nb::class_<ArrayWarper>(module, "Warper")
       .def("__init__", &make_array_warper, nb::arg("sources"), nb::arg("grid"), nb::arg("points"),
            nb::arg("tets"), nb::arg("hexes"), nb::kw_only(), nb::arg("interpolator"),
-           nb::arg("overshoot"), nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"),
-           nb::arg("outside"), nb::arg("falloff"), nb::arg("default_value"),
-           nb::arg("output_grid").none(), nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
+           nb::arg("label_rule"), nb::arg("label_gaussian"), nb::arg("overshoot"),
+           nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"), nb::arg("outside"),
+           nb::arg("falloff"), nb::arg("default_value"), nb::arg("output_grid").none(),
+           nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
       .def("report", [](const ArrayWarper& self) { return to_json(self.warper().report()); })
       .def("step", &run_step, nb::arg("deformed"), nb::arg("volumes"), nb::arg("extras"),
            nb::arg("holds_previous"), nb::arg("stream"), nb::arg("progress").none());

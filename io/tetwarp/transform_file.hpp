@@ -4,9 +4,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <tetwarp/axes.hpp>
 #include <tetwarp/error.hpp>
+#include <tetwarp/field_reader.hpp>
 #include <tetwarp/io_export.hpp>
 #include <tetwarp/names.hpp>
 #include <tetwarp/resample.hpp>
@@ -44,6 +46,12 @@ struct TransformReadOptions {
 TETWARP_IO_EXPORT bool is_transform_file(const std::string& path,
                                          const TransformReadOptions& options = {});
 
+/// A transform whose displacement fields are read in parts.
+struct TransformParts {
+  TransformFile file;               ///< its fields have grids, but no displacements
+  std::vector<FieldReader> fields;  ///< one per link of the transform; of a field: it reads them
+};
+
 /// Reads a transform from positions of the output to positions in the source, as resamplers take
 /// it, and turns it to RAS.
 ///
@@ -59,5 +67,10 @@ TETWARP_IO_EXPORT bool is_transform_file(const std::string& path,
 /// @throws IoError  on other transforms, files that do not tell their convention, damaged files
 TETWARP_IO_EXPORT TransformFile read_transform(const std::string& path,
                                                const TransformReadOptions& options = {});
+
+/// The same without the displacements of fields. Those of text and MATLAB files are in memory.
+/// @throws IoError  as above; the readers throw it, too
+TETWARP_IO_EXPORT TransformParts open_transform(const std::string& path,
+                                                const TransformReadOptions& options = {});
 
 }  // namespace tetwarp

@@ -2,8 +2,13 @@
 /// The convention of a field from its header.
 #include "io/transforms/field_file.hpp"
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <tetwarp/io.hpp>
 #include <utility>
+
+#include "io/h5/h5.hpp"
 
 namespace tetwarp {
 namespace {
@@ -47,80 +52,122 @@ double millimeters(const NiftiFacts& facts) {
   return unit == 1 ? 1000 : unit == 3 ? 0.001 : 1;
 }
 
-std::vector<float> numbers_of(const std::string& path, const Volume& volume, double scale) {
-  std::vector<float> numbers;
-  const auto add = [&](auto samples) {
-    numbers.reserve(samples.size());
-    for (const auto sample : samples) {
-      numbers.push_back(static_cast<float>(scale * static_cast<double>(sample)));
+/// The numbers of a field's file.
+class FieldNumbers {
+ public:
+  FieldNumbers(const std::string& path, const std::string& array, const VolumeReadOptions& options)
+      : path_(path), reader_(path, array, 0, options) {
+    const ArrayHeader& header = reader_.array();
+    if (header.components != 3) {
+      throw IoError(path, header.name,
+                    "has " + std::to_string(header.components) +
+                        " components, expected the three of a displacement");
     }
-  };
-  if (volume.components != 3) {
-    throw IoError(path, volume.name,
-                  "has " + std::to_string(volume.components) +
-                      " components, expected the three of a displacement");
+    if (header.type != PixelType::float32 && header.type != PixelType::float64) {
+      throw IoError(path, header.name,
+                    std::string("is of ") + name_of(header.type) + ", expected float32 or float64");
+    }
   }
-  if (volume.type == PixelType::float32) {
-    add(volume.samples<float>());
-  } else if (volume.type == PixelType::float64) {
-    add(volume.samples<double>());
-  } else {
-    throw IoError(path, volume.name,
-                  std::string("is of ") + name_of(volume.type) + ", expected float32 or float64");
+
+  const Grid& grid() const { return reader_.grid(); }
+  double voxel_bytes() const { return is_single() ? 12 : 12 + 24; }
+
+  /// @param numbers  out, of a region, each multiplied by `scale`
+  void read(const Region& region, double scale, float* numbers) const {
+    const auto count = static_cast<std::size_t>(3 * region.voxel_count());
+    if (is_single()) {
+      reader_.read(region, numbers);
+      for (std::size_t n = 0; scale != 1 && n < count; ++n) {
+        numbers[n] = static_cast<float>(scale * static_cast<double>(numbers[n]));
+      }
+      return;
+    }
+    const auto bytes = static_cast<double>(sizeof(double) * count);
+    h5::check_memory(path_, reader_.array().name, bytes);
+    const auto wide = std::make_unique_for_overwrite<double[]>(count);
+    reader_.read(region, wide.get());
+    for (std::size_t n = 0; n < count; ++n) numbers[n] = static_cast<float>(scale * wide[n]);
   }
-  return numbers;
+
+ private:
+  bool is_single() const { return reader_.array().type == PixelType::float32; }
+
+  std::string path_;
+  VolumeReader reader_;
+};
+
+/// A field of these numbers.
+/// @param change  makes the displacements of a region of its numbers
+template <class Change>
+TransformParts parts_of(const std::shared_ptr<const FieldNumbers>& numbers,
+                        double scale,
+                        std::string convention,
+                        Change change) {
+  FieldReader reader{[numbers, scale, change](const Region& region, float* displacement) {
+                       numbers->read(region, scale, displacement);
+                       change(region, displacement);
+                     },
+                     numbers->voxel_bytes()};
+  return {{DisplacementField{numbers->grid(), {}}, std::move(convention)}, {std::move(reader)}};
+}
+
+/// Positions minus those of their voxels.
+void subtract_places(const Grid& grid, const Region& region, float* positions) {
+  for (std::int64_t k = region.begin[2]; k < region.end[2]; ++k) {
+    for (std::int64_t j = region.begin[1]; j < region.end[1]; ++j) {
+      for (std::int64_t i = region.begin[0]; i < region.end[0]; ++i) {
+        const Point3 x =
+            grid.world_of({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+        for (const double coordinate : x) {
+          *positions = static_cast<float>(static_cast<double>(*positions) - coordinate);
+          ++positions;
+        }
+      }
+    }
+  }
 }
 }  // namespace
 
-TransformFile read_nifti_field(const std::string& path, const std::optional<Axes>& axes) {
+TransformParts open_nifti_field(const std::string& path, const std::optional<Axes>& axes) {
   const NiftiFacts facts = read_nifti_facts(path);
   const FieldConvention convention = convention_of(path, facts, axes);
   // ITK turns positions and components only of headers with a form.
   const bool has_form = facts.sform_code > 0 || facts.qform_code > 0;
   const Axes turned = has_form ? convention.axes : Axes::ras;
-  const Volume volume = read_volume(path, {}, 0, {.axes = turned});
-  const double scale = convention.is_in_mm ? 1 / millimeters(facts) : 1;
-  DisplacementField field{volume.grid, numbers_of(path, volume, scale)};
-  if (convention.holds_positions) {
-    std::size_t v = 0;
-    for (std::int64_t k = 0; k < field.grid.dims[2]; ++k) {
-      for (std::int64_t j = 0; j < field.grid.dims[1]; ++j) {
-        for (std::int64_t i = 0; i < field.grid.dims[0]; ++i) {
-          const Point3 x = field.grid.world_of(
-              {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
-          for (const double coordinate : x) {
-            float& number = field.displacement[v++];
-            number = static_cast<float>(static_cast<double>(number) - coordinate);
-          }
-        }
-      }
-    }
-  }
-  return {std::move(field),
-          std::string(convention.holds_positions ? "positions" : "displacements") + " along " +
-              (turned == Axes::lps ? "LPS"
-               : has_form          ? "RAS"
-                                   : "the header's") +
-              " axes in " + (convention.is_in_mm ? "mm" : "the header's unit") + " (" +
-              convention.said_by + ")"};
+  VolumeReadOptions options;
+  options.axes = turned;
+  const auto numbers = std::make_shared<const FieldNumbers>(path, "", options);
+  const std::string said = std::string(convention.holds_positions ? "positions" : "displacements") +
+                           " along " +
+                           (turned == Axes::lps ? "LPS"
+                            : has_form          ? "RAS"
+                                                : "the header's") +
+                           " axes in " + (convention.is_in_mm ? "mm" : "the header's unit") + " (" +
+                           convention.said_by + ")";
+  return parts_of(numbers, convention.is_in_mm ? 1 / millimeters(facts) : 1, said,
+                  [grid = numbers->grid(), holds_positions = convention.holds_positions](
+                      const Region& region, float* displacement) {
+                    if (holds_positions) subtract_places(grid, region, displacement);
+                  });
 }
 
-TransformFile read_image_field(const std::string& path, const std::optional<Axes>& axes) {
-  const Volume volume = read_volume(path);
-  DisplacementField field{volume.grid, numbers_of(path, volume, 1)};
+TransformParts open_image_field(const std::string& path, const std::optional<Axes>& axes) {
   const bool is_lps = axes.value_or(Axes::lps) == Axes::lps;
-  for (std::size_t n = 0; is_lps && n < field.displacement.size(); ++n) {
-    if (n % 3 < 2) field.displacement[n] = 0 - field.displacement[n];
-  }
-  return {std::move(field),
-          std::string("displacements along ") + (is_lps ? "LPS" : "RAS") +
-              (axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them")};
+  return parts_of(std::make_shared<const FieldNumbers>(path, "", VolumeReadOptions{}), 1,
+                  std::string("displacements along ") + (is_lps ? "LPS" : "RAS") +
+                      (axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them"),
+                  [is_lps](const Region& region, float* displacement) {
+                    for (std::int64_t n = 0; is_lps && n < 3 * region.voxel_count(); ++n) {
+                      if (n % 3 < 2) displacement[n] = 0 - displacement[n];
+                    }
+                  });
 }
 
-TransformFile read_volume_field(const std::string& path) {
-  const Volume volume = read_volume(path, "tetwarp_displacement");
-  return {DisplacementField{volume.grid, numbers_of(path, volume, 1)},
-          "displacements along the file's axes (array tetwarp_displacement)"};
+TransformParts open_volume_field(const std::string& path) {
+  return parts_of(
+      std::make_shared<const FieldNumbers>(path, "tetwarp_displacement", VolumeReadOptions{}), 1,
+      "displacements along the file's axes (array tetwarp_displacement)",
+      [](const Region&, float*) {});
 }
 
 }  // namespace tetwarp

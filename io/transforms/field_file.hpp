@@ -8,9 +8,9 @@
 
 namespace tetwarp {
 
-/// @throws IoError  as read_transform()
-TransformFile read_nifti_field(const std::string& path, const std::optional<Axes>& axes);
-TransformFile read_image_field(const std::string& path, const std::optional<Axes>& axes);
-TransformFile read_volume_field(const std::string& path);
+/// @throws IoError  as open_transform()
+TransformParts open_nifti_field(const std::string& path, const std::optional<Axes>& axes);
+TransformParts open_image_field(const std::string& path, const std::optional<Axes>& axes);
+TransformParts open_volume_field(const std::string& path);
 
 }  // namespace tetwarp

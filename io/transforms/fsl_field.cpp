@@ -3,13 +3,16 @@
 /// in RAS.
 #include "io/transforms/fsl_field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <tetwarp/io.hpp>
 #include <utility>
 #include <vector>
 
+#include "host/base/point3.hpp"
 #include "io/nifti/nifti_fields.hpp"
 
 namespace tetwarp {
@@ -55,45 +58,61 @@ FslSpace space_of(const std::string& path) {
   return space;
 }
 
-/// The three numbers of every voxel: along the axis of time, as FSL writes them, or of components.
-std::vector<double> numbers_of(const std::string& path, const NiftiHeader& header) {
-  const bool are_steps = header.steps == 3 && header.components == 1;
-  if (!are_steps && !(header.steps == 1 && header.components == 3)) {
-    throw IoError(path, "",
-                  "has " + std::to_string(header.steps) + " steps of " +
-                      std::to_string(header.components) +
-                      " components, expected the three volumes of a warp field of FSL");
-  }
-  std::vector<double> numbers(3 * static_cast<std::size_t>(header.grid.voxel_count()));
-  for (std::int64_t step = 0; step < (are_steps ? 3 : 1); ++step) {
-    const Volume volume = read_volume(path, {}, step);
-    const std::size_t stride = are_steps ? 3 : 1;
-    const auto copy = [&](auto samples) {
-      std::size_t n = static_cast<std::size_t>(step);
-      for (const auto sample : samples) {
-        numbers[n] = static_cast<double>(sample);
-        n += stride;
-      }
-    };
-    if (volume.type == PixelType::float32) {
-      copy(volume.samples<float>());
-    } else if (volume.type == PixelType::float64) {
-      copy(volume.samples<double>());
-    } else {
-      throw IoError(path, volume.name,
-                    std::string("is of ") + name_of(volume.type) + ", expected float32 or float64");
+/// The three numbers of voxels: along the axis of time, as FSL writes them, or of components.
+class FslNumbers {
+ public:
+  FslNumbers(const std::string& path, const NiftiHeader& header) {
+    const bool are_steps = header.steps == 3 && header.components == 1;
+    if (!are_steps && !(header.steps == 1 && header.components == 3)) {
+      throw IoError(path, "",
+                    "has " + std::to_string(header.steps) + " steps of " +
+                        std::to_string(header.components) +
+                        " components, expected the three volumes of a warp field of FSL");
+    }
+    for (std::int64_t step = 0; step < (are_steps ? 3 : 1); ++step) {
+      readers_.emplace_back(path, "", step);
+    }
+    const ArrayHeader& array = readers_.front().array();
+    if (array.type != PixelType::float32 && array.type != PixelType::float64) {
+      throw IoError(path, array.name,
+                    std::string("is of ") + name_of(array.type) + ", expected float32 or float64");
     }
   }
-  return numbers;
-}
 
-/// Calls visit(voxel, its number) for all voxels.
+  const Grid& grid() const { return readers_.front().grid(); }
+  /// Memory of a voxel while it is read: displacements, numbers, and those of a reader.
+  double voxel_bytes() const { return 12 + 24 + 24; }
+
+  std::vector<double> read(const Region& region) const {
+    return readers_.front().array().type == PixelType::float32 ? read_as<float>(region)
+                                                               : read_as<double>(region);
+  }
+
+ private:
+  template <class T>
+  std::vector<double> read_as(const Region& region) const {
+    const std::size_t stride = readers_.size();
+    std::vector<double> numbers(3 * static_cast<std::size_t>(region.voxel_count()));
+    std::vector<T> samples(numbers.size() / stride);
+    for (std::size_t r = 0; r < stride; ++r) {
+      readers_[r].read(region, samples.data());
+      for (std::size_t n = 0; n < samples.size(); ++n) {
+        numbers[stride * n + r] = static_cast<double>(samples[n]);
+      }
+    }
+    return numbers;
+  }
+
+  std::vector<VolumeReader> readers_;
+};
+
+/// Calls visit(voxel, its number) for all voxels of a region.
 template <class Visit>
-void for_voxels(const Grid& grid, const Visit& visit) {
+void for_voxels(const Region& region, const Visit& visit) {
   std::size_t v = 0;
-  for (std::int64_t k = 0; k < grid.dims[2]; ++k) {
-    for (std::int64_t j = 0; j < grid.dims[1]; ++j) {
-      for (std::int64_t i = 0; i < grid.dims[0]; ++i, ++v) {
+  for (std::int64_t k = region.begin[2]; k < region.end[2]; ++k) {
+    for (std::int64_t j = region.begin[1]; j < region.end[1]; ++j) {
+      for (std::int64_t i = region.begin[0]; i < region.end[0]; ++i, ++v) {
         visit(Point3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}, v);
       }
     }
@@ -119,16 +138,21 @@ class Spread {
 };
 
 /// Displacements spread less than the coordinates of an image, positions as much as these.
-FslWarp kind_of_numbers(const std::string& path,
-                        const FslSpace& space,
-                        const std::vector<double>& numbers) {
+FslWarp kind_of_numbers(const std::string& path, const FslSpace& space, const FslNumbers& numbers) {
+  const auto& dims = space.grid.dims;
+  constexpr std::int64_t most_voxels = 1 << 18;  // in memory
+  const std::int64_t slices = std::max<std::int64_t>(1, most_voxels / (dims[0] * dims[1]));
   Spread as_they_are, without_place;
-  for_voxels(space.grid, [&](const Point3& voxel, std::size_t v) {
-    const Point3 x = space.of_voxel(voxel);
-    const Point3 number{numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]};
-    as_they_are.add(number);
-    without_place.add({number[0] - x[0], number[1] - x[1], number[2] - x[2]});
-  });
+  for (std::int64_t k = 0; k < dims[2]; k += slices) {
+    const Region region{{0, 0, k}, {dims[0], dims[1], std::min(k + slices, dims[2])}};
+    const std::vector<double> some = numbers.read(region);
+    for_voxels(region, [&](const Point3& voxel, std::size_t v) {
+      const Point3 x = space.of_voxel(voxel);
+      const Point3 number{some[3 * v], some[3 * v + 1], some[3 * v + 2]};
+      as_they_are.add(number);
+      without_place.add({number[0] - x[0], number[1] - x[1], number[2] - x[2]});
+    });
+  }
   if (2 * as_they_are.value() < without_place.value()) return FslWarp::relative;
   if (2 * without_place.value() < as_they_are.value()) return FslWarp::absolute;
   throw IoError(path, "",
@@ -143,7 +167,7 @@ bool is_fsl_field(const NiftiHeader& header, const TransformReadOptions& options
          (!options.axes && intent >= first_intent && intent <= last_intent);
 }
 
-TransformFile read_fsl_field(const std::string& path, const TransformReadOptions& options) {
+TransformParts open_fsl_field(const std::string& path, const TransformReadOptions& options) {
   const NiftiHeader header = read_nifti_header(path);
   const int intent = header.facts.intent_code;
   if (!options.fsl && intent != displacement_intent) {
@@ -163,25 +187,28 @@ TransformFile read_fsl_field(const std::string& path, const TransformReadOptions
                       "' of FSL leads; convert it to NIfTI");
   }
   const FslSpace from = space_of(path), to = space_of(options.image);
-  const std::vector<double> numbers = numbers_of(path, header);
-  const FslWarp kind = options.fsl ? *options.fsl : kind_of_numbers(path, from, numbers);
-  DisplacementField field{from.grid, std::vector<float>(numbers.size())};
-  for_voxels(from.grid, [&](const Point3& voxel, std::size_t v) {
-    const Point3 start = from.of_voxel(voxel), here = from.grid.world_of(voxel);
-    Point3 x{numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]};
-    for (std::size_t axis = 0; axis < 3 && kind == FslWarp::relative; ++axis)
-      x[axis] += start[axis];
-    const Point3 there = to.grid.world_of(to.voxel_of(x));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      field.displacement[3 * v + axis] = static_cast<float>(there[axis] - here[axis]);
-    }
-  });
-  TransformFile file{std::move(field),
+  const auto numbers = std::make_shared<const FslNumbers>(path, header);
+  const FslWarp kind = options.fsl ? *options.fsl : kind_of_numbers(path, from, *numbers);
+  FieldReader reader{[numbers, from, to, kind](const Region& region, float* displacement) {
+                       const std::vector<double> some = numbers->read(region);
+                       for_voxels(region, [&](const Point3& voxel, std::size_t v) {
+                         Point3 x{some[3 * v], some[3 * v + 1], some[3 * v + 2]};
+                         if (kind == FslWarp::relative) x = plus(x, from.of_voxel(voxel));
+                         const Point3 there = to.grid.world_of(to.voxel_of(x));
+                         const Point3 here = from.grid.world_of(voxel);
+                         for (std::size_t axis = 0; axis < 3; ++axis) {
+                           displacement[3 * v + axis] =
+                               static_cast<float>(there[axis] - here[axis]);
+                         }
+                       });
+                     },
+                     numbers->voxel_bytes()};
+  TransformFile file{DisplacementField{from.grid, {}},
                      std::string(kind == FslWarp::relative ? "displacements" : "positions") +
                          " in scaled voxels of FSL (" + (options.fsl ? "--fsl" : "intent 2006") +
                          ")"};
   file.ends_with_field = true;
-  return file;
+  return {std::move(file), {std::move(reader)}};
 }
 
 }  // namespace tetwarp

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <tetwarp/error.hpp>
 #include <utility>
@@ -175,21 +176,71 @@ Grid grid_of(const std::string& path, const ItkTransform& transform) {
   } catch (const std::invalid_argument& error) {
     throw IoError(path, transform.type, error.what());
   }
-  check_finite(path, transform.type, transform.parameters,
-               3 * static_cast<std::size_t>(grid.voxel_count()),
-               "parameters, three per grid point");
+  const auto expected = 3 * static_cast<std::size_t>(grid.voxel_count());
+  const char* const what = "parameters, three per grid point";
+  if (!transform.read) {
+    check_finite(path, transform.type, transform.parameters, expected, what);
+  } else if (transform.stored != static_cast<std::int64_t>(expected)) {
+    throw IoError(path, transform.type,
+                  "expected " + std::to_string(expected) + " finite " + what + ", got " +
+                      std::to_string(transform.stored));
+  }
   return grid;
 }
 
-DisplacementField field_of(const std::string& path, const ItkTransform& transform) {
-  DisplacementField field{grid_of(path, transform), {}};
-  field.displacement.reserve(transform.parameters.size());
-  for (std::size_t n = 0; n < transform.parameters.size(); ++n) {
-    const double number = transform.parameters[n];
-    field.displacement.push_back(static_cast<float>(n % 3 < 2 ? 0 - number : number));
+/// Reads displacements from parameters, as many rows at a time as follow each other in the file.
+class ItkField {
+ public:
+  ItkField(std::string path, const Grid& grid, ItkTransform transform)
+      : path_(std::move(path)), grid_(grid), transform_(std::move(transform)) {}
+
+  void read(const Region& region, float* displacement) const {
+    const auto& [begin, end] = region;
+    const bool are_whole_slices = end[1] - begin[1] == grid_.dims[1];
+    const std::int64_t runs = are_whole_slices ? 1 : end[2] - begin[2];
+    const std::int64_t rows = (end[1] - begin[1]) * (end[2] - begin[2]) / runs;
+    for (std::int64_t run = 0; run < runs; ++run) {
+      const std::int64_t first = begin[1] + grid_.dims[1] * (begin[2] + run);
+      read_rows(first, first + rows, region, displacement);
+    }
   }
-  return field;
-}
+
+ private:
+  /// Reads rows [first, end), numbered through all slices.
+  /// @param displacement  moves to the end of what is read
+  void read_rows(std::int64_t first,
+                 std::int64_t end,
+                 const Region& region,
+                 float*& displacement) const {
+    constexpr std::int64_t most_numbers = 1 << 19;  // 4 MB
+    const std::int64_t width = 3 * grid_.dims[0];
+    const std::int64_t at_once = std::max<std::int64_t>(1, most_numbers / width);
+    for (std::int64_t row = first; row < end; row += at_once) {
+      const std::int64_t count = std::min(at_once, end - row);
+      const std::vector<double> read = numbers(width * row, width * count);
+      for (std::int64_t r = 0; r < count; ++r) {
+        const double* const number = read.data() + width * r;
+        for (std::int64_t n = 3 * region.begin[0]; n < 3 * region.end[0]; ++n) {
+          *displacement++ = static_cast<float>(n % 3 < 2 ? 0 - number[n] : number[n]);
+        }
+      }
+    }
+  }
+
+  std::vector<double> numbers(std::int64_t first, std::int64_t count) const {
+    if (!transform_.read) {
+      const auto begin = transform_.parameters.begin() + first;
+      return {begin, begin + count};
+    }
+    std::vector<double> read = transform_.read(first, count);
+    check_finite(path_, transform_.type, read, read.size(), "parameters");
+    return read;
+  }
+
+  std::string path_;
+  Grid grid_;
+  ItkTransform transform_;
+};
 
 /// ITK stores all x coefficients, then y, then z.
 BSplineTransform spline_of(const std::string& path, const ItkTransform& transform) {
@@ -208,21 +259,34 @@ BSplineTransform spline_of(const std::string& path, const ItkTransform& transfor
   return spline;
 }
 
-SingleTransform single_of(const std::string& path, const ItkTransform& transform) {
+/// One transform, with what reads its displacements if it is a field.
+struct SingleLink {
+  SingleTransform transform;
+  FieldReader field;
+};
+
+SingleLink single_of(const std::string& path, const ItkTransform& transform) {
   const std::string name = transform.type.substr(0, transform.type.find('_'));
   if (!transform.type.ends_with("_3_3")) refuse(path, transform.type);
-  if (name.ends_with("DisplacementFieldTransform")) return field_of(path, transform);
-  if (name == "BSplineTransform") return spline_of(path, transform);
+  if (is_itk_field(transform.type)) {
+    const Grid grid = grid_of(path, transform);
+    const auto field = std::make_shared<const ItkField>(path, grid, transform);
+    return {DisplacementField{grid, {}}, {[field](const Region& region, float* displacement) {
+              field->read(region, displacement);
+            }}};
+  }
+  if (name == "BSplineTransform") return {spline_of(path, transform), {}};
   const Kind* const kind = std::find_if(std::begin(kinds), std::end(kinds),
                                         [&](const Kind& known) { return name == known.name; });
   if (kind == std::end(kinds)) refuse(path, transform.type);
-  return affine_of(path, transform, *kind);
+  return {affine_of(path, transform, *kind), {}};
 }
 
 /// Appends a transform that follows; two affine ones become one.
-void append(std::vector<SingleTransform>& links, SingleTransform next) {
-  auto* const last = links.empty() ? nullptr : std::get_if<AffineTransform>(&links.back());
-  const auto* const affine = std::get_if<AffineTransform>(&next);
+void append(std::vector<SingleLink>& links, SingleLink next) {
+  auto* const last =
+      links.empty() ? nullptr : std::get_if<AffineTransform>(&links.back().transform);
+  const auto* const affine = std::get_if<AffineTransform>(&next.transform);
   if (last == nullptr || affine == nullptr) {
     links.push_back(std::move(next));
     return;
@@ -234,7 +298,11 @@ void append(std::vector<SingleTransform>& links, SingleTransform next) {
 }
 }  // namespace
 
-Transform transform_of(const std::string& path, const std::vector<ItkTransform>& transforms) {
+bool is_itk_field(const std::string& type) {
+  return type.substr(0, type.find('_')).ends_with("DisplacementFieldTransform");
+}
+
+TransformParts transform_of(const std::string& path, const std::vector<ItkTransform>& transforms) {
   if (transforms.empty()) throw IoError(path, "", "holds no transform");
   const bool is_composite = transforms.front().type.starts_with("CompositeTransform");
   if (!is_composite && transforms.size() > 1) {
@@ -242,13 +310,23 @@ Transform transform_of(const std::string& path, const std::vector<ItkTransform>&
                   "holds " + std::to_string(transforms.size()) +
                       " transforms and not how they follow each other; write a composite");
   }
-  TransformChain chain;
+  std::vector<SingleLink> links;
   for (std::size_t t = transforms.size(); t > (is_composite ? 1U : 0U); --t) {
-    append(chain.links, single_of(path, transforms[t - 1]));
+    append(links, single_of(path, transforms[t - 1]));
   }
-  if (chain.links.empty()) return AffineTransform{};
-  if (chain.links.size() > 1) return chain;
-  return std::visit([](auto& only) -> Transform { return std::move(only); }, chain.links.front());
+  if (links.empty()) links.push_back({AffineTransform{}, {}});
+  TransformParts parts;
+  TransformChain chain;
+  for (SingleLink& link : links) {
+    parts.fields.push_back(std::move(link.field));
+    chain.links.push_back(std::move(link.transform));
+  }
+  if (chain.links.size() > 1) {
+    parts.file.transform = std::move(chain);
+  } else {
+    std::visit([&](auto& only) { parts.file.transform = std::move(only); }, chain.links.front());
+  }
+  return parts;
 }
 
 }  // namespace tetwarp

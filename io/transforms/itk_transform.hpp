@@ -1,10 +1,12 @@
 /// @file itk_transform.hpp
 /// Transforms that ITK writes by type and parameters.
 #pragma once
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include <tetwarp/resample.hpp>
+#include <tetwarp/transform_file.hpp>
 
 namespace tetwarp {
 
@@ -13,10 +15,19 @@ struct ItkTransform {
   std::string type;                ///< "AffineTransform_double_3_3"
   std::vector<double> parameters;  ///< numbers that ITK optimizes
   std::vector<double> fixed;       ///< others: a center, or a grid
+
+  /// Of a field in an HDF5 file, whose parameters stay there: their number, and what reads `count`
+  /// of them from `first` on.
+  std::int64_t stored = 0;
+  std::function<std::vector<double>(std::int64_t first, std::int64_t count)> read = {};
 };
 
-/// The transform of a file, turned from LPS to RAS. A composite applies its last transform first.
+/// Whether a type is that of a displacement field.
+bool is_itk_field(const std::string& type);
+
+/// The transform of a file, turned from LPS to RAS, without a convention. A composite applies its
+/// last transform first.
 /// @throws IoError  when the file holds several without a composite, or one that is not read
-Transform transform_of(const std::string& path, const std::vector<ItkTransform>& transforms);
+TransformParts transform_of(const std::string& path, const std::vector<ItkTransform>& transforms);
 
 }  // namespace tetwarp

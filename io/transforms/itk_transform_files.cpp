@@ -6,8 +6,11 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <tetwarp/error.hpp>
+#include <utility>
 
 #include "io/files/text_file.hpp"
 #include "io/h5/h5.hpp"
@@ -29,12 +32,30 @@ std::vector<double> numbers_in(const std::string& path, const std::string& text)
   return numbers;
 }
 
-/// Numbers of a transform under the name of ITK 5 or the misspelled one of ITK 4; none: empty.
-std::vector<double> hdf5_numbers(const h5::Object& group, const char* name, const char* old_name) {
+/// The dataset of a transform under the name of ITK 5 or the misspelled one of ITK 4, if it has
+/// one.
+std::optional<h5::Dataset> hdf5_dataset(const h5::Object& group,
+                                        const char* name,
+                                        const char* old_name) {
   for (const char* const known : {name, old_name}) {
-    if (h5::has_child(group, known)) return h5::read_reals(h5::open_dataset(group, known));
+    if (h5::has_child(group, known)) return h5::open_dataset(group, known);
   }
-  return {};
+  return std::nullopt;
+}
+
+/// Leaves parameters in the file, for the transform to read them.
+void set_stored(h5::Dataset dataset, ItkTransform& transform) {
+  if (!h5::is_numeric(dataset) || dataset.dims.size() != 1) {
+    dataset.fail("is no list of numbers");
+  }
+  transform.stored = dataset.rows();
+  transform.read = [kept = std::make_shared<const h5::Dataset>(std::move(dataset))](
+                       std::int64_t first, std::int64_t count) {
+    const h5::Silence silence;
+    std::vector<double> numbers(static_cast<std::size_t>(count));
+    h5::read_block(*kept, H5T_NATIVE_DOUBLE, {&first, 1}, {&count, 1}, numbers.data());
+    return numbers;
+  };
 }
 }  // namespace
 
@@ -121,8 +142,14 @@ std::vector<ItkTransform> read_itk_hdf5(const std::string& path) {
     const h5::Object group = h5::open_group(all, std::to_string(n));
     ItkTransform transform;
     transform.type = h5::read_text(h5::open_dataset(group, "TransformType"));
-    transform.parameters = hdf5_numbers(group, "TransformParameters", "TranformParameters");
-    transform.fixed = hdf5_numbers(group, "TransformFixedParameters", "TranformFixedParameters");
+    auto parameters = hdf5_dataset(group, "TransformParameters", "TranformParameters");
+    const auto fixed = hdf5_dataset(group, "TransformFixedParameters", "TranformFixedParameters");
+    if (fixed) transform.fixed = h5::read_reals(*fixed);
+    if (parameters && is_itk_field(transform.type)) {
+      set_stored(std::move(*parameters), transform);
+    } else if (parameters) {
+      transform.parameters = h5::read_reals(*parameters);
+    }
     transforms.push_back(std::move(transform));
   }
   return transforms;

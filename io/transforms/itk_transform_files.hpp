@@ -19,7 +19,7 @@ std::vector<ItkTransform> read_itk_matlab(const std::string& path);
 /// Whether a file is HDF5 and holds transforms of ITK.
 bool is_itk_hdf5(const std::string& path);
 
-/// The transforms of such a file, in its order.
+/// The transforms of such a file, in its order; parameters of fields stay there.
 /// @throws IoError  when it is damaged
 std::vector<ItkTransform> read_itk_hdf5(const std::string& path);
 

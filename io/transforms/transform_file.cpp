@@ -3,11 +3,14 @@
 #include <tetwarp/transform_file.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <tetwarp/io.hpp>
 #include <utility>
 #include <variant>
 
 #include "io/files/extension.hpp"
+#include "io/h5/h5.hpp"
 #include "io/transforms/field_file.hpp"
 #include "io/transforms/fsl_field.hpp"
 #include "io/transforms/itk_transform.hpp"
@@ -50,25 +53,41 @@ bool is_transform_file(const std::string& path, const TransformReadOptions& opti
 }
 
 TransformFile read_transform(const std::string& path, const TransformReadOptions& options) {
+  TransformParts parts = open_transform(path, options);
+  Transform& transform = parts.file.transform;
+  auto* const chain = std::get_if<TransformChain>(&transform);
+  for (std::size_t n = 0; n < parts.fields.size(); ++n) {
+    auto* const field = chain == nullptr ? std::get_if<DisplacementField>(&transform)
+                                         : std::get_if<DisplacementField>(&chain->links[n]);
+    if (field == nullptr) continue;
+    const std::int64_t voxels = field->grid.voxel_count();
+    h5::check_memory(path, "", parts.fields[n].voxel_bytes * static_cast<double>(voxels));
+    field->displacement.resize(3 * static_cast<std::size_t>(voxels));
+    parts.fields[n].read({{0, 0, 0}, field->grid.dims}, field->displacement.data());
+  }
+  return std::move(parts.file);
+}
+
+TransformParts open_transform(const std::string& path, const TransformReadOptions& options) {
   if (!has_transform_name(path)) {
     switch (kind_of(path)) {
       case FileKind::nifti:
         return is_fsl_field(read_nifti_header(path), options)
-                   ? read_fsl_field(path, options)
-                   : read_nifti_field(path, options.axes);
+                   ? open_fsl_field(path, options)
+                   : open_nifti_field(path, options.axes);
       case FileKind::image:
-        return read_image_field(path, options.axes);
+        return open_image_field(path, options.axes);
       case FileKind::hdf5:
         break;
       default:
-        return read_volume_field(path);
+        return open_volume_field(path);
     }
   }
-  Transform transform = transform_of(path, has_extension(path, ".mat") ? read_itk_matlab(path)
-                                           : has_transform_name(path)  ? read_itk_text(path)
-                                                                       : read_itk_hdf5(path));
-  std::string convention = std::string(what_of(transform)) + " of ITK along LPS axes";
-  return {std::move(transform), std::move(convention)};
+  TransformParts parts = transform_of(path, has_extension(path, ".mat") ? read_itk_matlab(path)
+                                            : has_transform_name(path)  ? read_itk_text(path)
+                                                                        : read_itk_hdf5(path));
+  parts.file.convention = std::string(what_of(parts.file.transform)) + " of ITK along LPS axes";
+  return parts;
 }
 
 }  // namespace tetwarp

@@ -20,6 +20,7 @@ struct CompliantBody {
   const float* inverse = nullptr;     ///< A_0^-1, [3 count][3 count], symmetric; null: omega D^-1
   double relaxation = 1;              ///< omega, where omega D^-1 is used
   std::int32_t frame = -1;            ///< its rotation, -1: none
+  bool is_joined = false;             ///< A couples its rows with those of other bodies of the list
   std::int32_t system_row = 0;        ///< its first row of the system
   std::int32_t first = 0, count = 0;  ///< its rows
   std::int32_t first_node = 0, node_count = 0;  ///< its nodes, in the order of their rows

@@ -20,7 +20,8 @@ struct ResampleMap {
   IndexAffine to_world;             ///< output index to world, for `links`
   IndexAffine to_first;             ///< output index to where the first link is applied [world]
   IndexAffine to_first_index;       ///< the same in the index space of its grid
-  bool only_in_field;               ///< positions beyond a field or spline are beyond the source
+  bool is_parallel;    ///< the only link is a field with a grid along the axes of the output's
+  bool only_in_field;  ///< positions beyond a field or spline are beyond the source
 
   TETWARP_HD bool has_field() const { return field.vectors != nullptr; }
 
@@ -69,9 +70,11 @@ template <class T>
 struct RowResampleOp {
   RasterJob<T> job;  ///< source, filter, background and volume are used
   ResampleMap map;
-  std::int64_t dims[3];  ///< of the output
+  std::int64_t dims[3];            ///< of the output, or of a part of it of whole rows
+  std::int64_t begin[2] = {0, 0};  ///< first row and slice of the part in the output
+  bool may_use_vectors = true;
 
-  /// @param voxel  number of (i, j, k) in the output
+  /// @param voxel  number of (i, j, k) in the part
   TETWARP_HD void store(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t voxel) const {
     double position[3];
     int whole[3];
@@ -80,7 +83,7 @@ struct RowResampleOp {
     for (int axis = 0; axis < 3; ++axis) {
       is_near = is_near && fabs(position[axis]) <= max_whole;  // not of NaN
       const double lower = is_near ? floor(position[axis]) : -1;
-      whole[axis] = static_cast<int>(lower);
+      whole[axis] = static_cast<int>(lower) - job.source.origin[axis];
       x[axis] = static_cast<ArithmeticOf<T>>(position[axis] - lower);
     }
     if (is_near) return store_position<true>(job, job.filter, whole, x, voxel);
@@ -89,7 +92,7 @@ struct RowResampleOp {
   }
 
   TETWARP_HD void operator()(std::int64_t row) const {
-    const std::int64_t j = row % dims[1], k = row / dims[1];
+    const std::int64_t j = begin[0] + row % dims[1], k = begin[1] + row / dims[1];
     for (std::int64_t i = 0; i < dims[0]; ++i) store(i, j, k, row * dims[0] + i);
   }
 };

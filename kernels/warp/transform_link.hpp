@@ -21,13 +21,20 @@ struct IndexAffine {
   }
 };
 
-/// Vectors on a grid.
+/// Vectors on a grid, or those of a window of it. No position within the grid is sampled that
+/// reads vectors beyond the window.
 struct FieldView {
-  const float* vectors = nullptr;  ///< [k][j][i][3], world; null: there is no field
-  std::int64_t dims[3] = {0, 0, 0};
+  const float* vectors = nullptr;    ///< [k][j][i][3], world; null: there is no field
+  std::int64_t dims[3] = {0, 0, 0};  ///< of the grid
+  std::int64_t size[3] = {0, 0, 0};  ///< of the window
+  std::int64_t first = 0;            ///< place() of the window's first voxel
 
+  /// Of a voxel of the grid in an array that has the window's size and begins at voxel (0, 0, 0).
+  TETWARP_HD std::int64_t place(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    return i + size[0] * (j + size[1] * k);
+  }
   TETWARP_HD const float* at(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    return vectors + 3 * (i + dims[0] * (j + dims[1] * k));
+    return vectors + 3 * (place(i, j, k) - first);
   }
 
   /// The vector at an index position, linear between centers, constant for the last half voxel.

@@ -74,11 +74,12 @@ void voxel_gaussian(Exec& exec, const VoxelGaussianOp& op) {
 struct RowGaussianOp {
   GaussianLabels labels;
   ResampleMap map;
-  std::int64_t dims[3];  ///< of the output
+  std::int64_t dims[3];   ///< of the output, or of a part of it of whole rows
+  std::int64_t begin[2];  ///< first row and slice of the part in the output
   NumberView output;
 
   TETWARP_HD void operator()(std::int64_t row) const {
-    const std::int64_t j = row % dims[1], k = row / dims[1];
+    const std::int64_t j = begin[0] + row % dims[1], k = begin[1] + row / dims[1];
     for (std::int64_t i = 0; i < dims[0]; ++i) {
       double x[3];
       const bool is_near = map.position(i, j, k, x);

@@ -1,12 +1,18 @@
-"""Uses an installed wheel, beside h5py in the same process, with the command and tetwarp-read."""
+"""Uses an installed wheel, its command and tetwarp-read, in one process with packages that bring
+libraries of their own for the same files: python check_wheel.py PACKAGE... imports them in this
+order."""
 
+import importlib
 import pathlib
+import re
 import subprocess
+import sys
 
-import h5py
 import numpy as np
 
-import tetwarp
+for package in sys.argv[1:]:
+    importlib.import_module(package)
+h5py, sitk, tetwarp, vtk = (sys.modules[name] for name in ("h5py", "SimpleITK", "tetwarp", "vtk"))
 
 volume = tetwarp.phantom(shape=(30, 40, 50))
 mesh = tetwarp.lattice_mesh(volume, cells=3)
@@ -22,17 +28,39 @@ with h5py.File("other.h5", "w") as other:
 with h5py.File("volume.vtkhdf") as file:
     values = next(iter(file["VTKHDF/PointData"].values()))
     assert np.array_equal(values[...].ravel(), volume.array.ravel())
-print(f"HDF5 of h5py: {h5py.version.hdf5_version}")
+reader = vtk.vtkHDFReader()
+reader.SetFileName("volume.vtkhdf")
+reader.Update()
+assert np.array_equal(reader.GetOutput().GetPointData().GetArray(0), volume.array.ravel())
+tetwarp.write("volume.nii.gz", volume)
+assert np.array_equal(sitk.GetArrayFromImage(sitk.ReadImage("volume.nii.gz")), volume.array)
+sitk.WriteImage(sitk.GetImageFromArray(volume.array), "other.nii.gz")
+assert np.array_equal(tetwarp.read("other.nii.gz").array, volume.array)
+
+# Libraries of the wheel have names that no other package looks for, and are those in use.
+libraries = pathlib.Path(tetwarp.__file__).parent.parent / "tetwarp.libs"
+names = {path.name for path in libraries.iterdir()}
+assert all(re.search(r"-[0-9a-f]{8}\.so", name) for name in names), names
+used = {name for name in names if name in pathlib.Path("/proc/self/maps").read_text("utf8")}
+print(f"{sys.argv[1:]}: {len(used)} of {len(names)} libraries of the wheel in this process; "
+      f"HDF5 of h5py: {h5py.version.hdf5_version}")
+assert used
 
 subprocess.run("tetwarp --version".split(), check=True)
 subprocess.run(
     "tetwarp warp volume.vtkhdf mesh.vtkhdf -o warped.vtkhdf --steps -1 --backend cpu".split(),
     check=True, stdout=subprocess.DEVNULL)
 assert np.array_equal(tetwarp.read("warped.vtkhdf").array, result.volume)
+namespace = ["unshare", "--mount", "--map-root-user", "sh", "-c"]
+if subprocess.run([*namespace, "mount -t tmpfs none /proc"], check=False).returncode == 0:
+    subprocess.run([*namespace, "mount -t tmpfs none /proc && exec tetwarp --version"], check=True)
+else:
+    print("not tried: the command without /proc")
 
-pathlib.Path("points.vtu").write_text("<VTKFile/>")
-read = subprocess.run("tetwarp info points.vtu".split(), text=True, capture_output=True,
-                      check=False)
+# The wheel's reader has no VTK; in Python meshio takes its place.
+tetwarp.to_meshio(mesh).write("mesh.vtu")
+assert np.array_equal(tetwarp.read("mesh.vtu").mesh.points, mesh.points)
+read = subprocess.run("tetwarp info mesh.vtu".split(), text=True, capture_output=True, check=False)
 assert read.returncode != 0 and "VTK" in read.stderr, read
 print(read.stderr.strip())
 for backend in tetwarp.available_backends():

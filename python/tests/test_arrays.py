@@ -126,7 +126,9 @@ def _warp(source, mesh, **changes):
     ("volume", np.zeros((4, 0, 4)), "volume: expected at least one voxel"),
     ("volume", [], "volume: expected at least one volume"),
     ("rest", np.zeros((5, 2)), r"rest: expected shape \(n, 3\).*got \(5, 2\)"),
+    ("volume", "head.nii", "volume: expected samples, got the name 'head.nii'; tetwarp.read"),
     ("rest", "text", "rest: expected an array of numbers"),
+    ("rest", tetwarp.Mesh(np.eye(4, 3), [(0, 1, 2, 3)]), r"rest: .*; \*mesh gives nodes and cells"),
     ("cells", [(0, 1, 2)], r"cells: expected shape \(m, 4\).*got \(1, 3\)"),
     ("cells", [(0.0, 1, 2, 3)], "cells: expected integers.*got float64"),
     ("cells", [(0, 1, 2, -1)], "cells: expected numbers of nodes from 0 to .*found -1"),
@@ -134,7 +136,13 @@ def _warp(source, mesh, **changes):
     ("cells", np.zeros((0, 4), int), "cells: expected at least one cell"),
     ("deformed", np.zeros((3, 3)), "deformed: expected .* rows, one per node, got 3"),
     ("interpolator", "spline", "interpolator: 'spline' is not one of linear, nearest"),
+    ("interpolator", 3, "interpolator: expected a word, got 3"),
+    ("interpolator", "labels", "volume: float32 holds no labels"),
     ("outside", "zero", "outside: 'zero' is not one of background, identity"),
+    ("outside", None, "outside: expected a word, got None"),
+    ("falloff", 3, 'falloff: is for outside="falloff", got outside=\'background\''),
+    ("progress", 3, "progress: expected a function, got 3"),
+    ("quantity", "rotate", "quantity: a vector has 3 components, the source 1"),
     ("backend", "gpu", "backend: 'gpu' is not one of auto, cuda, cpu"),
     ("quantity", ["rotate", "rotate"], "quantity: expected 1 words, one per volume, got 2"),
     ("reference", "grid", "reference: expected a tetwarp.Grid.*got str"),
@@ -151,6 +159,30 @@ def _warp(source, mesh, **changes):
 def test_errors_name_the_argument(name, change, text, volume, mesh):
     with pytest.raises(ValueError, match=text):
         _warp(volume, mesh, **{name: change})
+
+
+@pytest.mark.parametrize("call, text", [
+    (lambda m: tetwarp.lattice_mesh(np.ones((3, 3, 3)), threshold="high"), "threshold: expected a"),
+    (lambda m: tetwarp.deform(*m, amount="much"), "amount: expected a number, got 'much'"),
+    (lambda m: tetwarp.deform(*m, seed="x"), "seed: expected a whole number, got 'x'"),
+    (lambda m: tetwarp.deform(*m, kind=1), "kind: expected a word, got 1"),
+    (lambda m: tetwarp.phantom("fish", spacing="wide"), "spacing: expected an array of numbers"),
+    (lambda m: tetwarp.phantom(3), "kind: expected a word, got 3"),
+    (lambda m: tetwarp.isosurface(np.ones((3, 3, 3)), "x"), "value: expected a number, got 'x'"),
+    (lambda m: tetwarp.isosurface(np.ones((3, 3, 3)), 1, triangles="x"), "triangles: expected a"),
+    (lambda m: tetwarp.solve_contacts(delassus=np.eye(3), free_velocity=np.ones(3), friction=[0],
+                                      tolerance="small"), "tolerance: expected a number"),
+    (lambda m: tetwarp.Simulator(tetwarp.shipped_scene("top")).step("ten"), "count: expected a w"),
+    (lambda m: tetwarp.WarpOperator("x", *m, m[0]), "source: expected a tetwarp.Grid"),
+    (lambda m: tetwarp.WarpOperator(tetwarp.Grid((3, 3, 3)), *m, m[0], interpolator="labels"),
+     "interpolator: labels is not linear in the samples; choose"),
+    (lambda m: tetwarp.mesh_from(3), "mesh: expected a mesh of meshio .* got int"),
+    (lambda m: tetwarp.write("mesh.nii.gz", m), "path: mesh.nii.gz: .* which ends in .vtkhdf"),
+    (lambda m: tetwarp.write("a.png", tetwarp.phantom(shape=(3, 3, 3))), r"path: a.png: .*\.nrrd"),
+])
+def test_errors_of_other_calls_name_the_argument(call, text, mesh):
+    with pytest.raises(ValueError, match=text):
+        call(mesh)
 
 
 def test_positions_must_be_finite(volume, mesh):

@@ -1,5 +1,6 @@
-"""The example module of 3D Slicer and the example controller of SOFA. Neither program is installed
-here: stand-ins take the place of Slicer's nodes, of its grid transform and of SOFA; VTK is real."""
+"""The example module of 3D Slicer and the example controller of SOFA. Stand-ins take the place of SOFA
+and of Slicer's panel; nodes, scene and grid transform are those of Slicer where its libraries are
+installed (slicer-core of PyPI), and stand-ins elsewhere. VTK is real."""
 
 import importlib.util
 import sys
@@ -168,23 +169,38 @@ class StandInNode:
         self.transform = transform
 
 
+def matrix_of(array):
+    from vtkmodules.vtkCommonMath import vtkMatrix4x4
+
+    matrix = vtkMatrix4x4()
+    for row, column in np.ndindex(4, 4):
+        matrix.SetElement(row, column, array[row, column])
+    return matrix
+
+
 def stand_in_array(matrix):
     return np.array([[matrix.GetElement(r, c) for c in range(4)] for r in range(4)])
 
 
 @pytest.fixture
-def slicer(monkeypatch):
-    """Names of Slicer that the module uses, without its panel."""
-    modules = {name: types.ModuleType(name) for name in
-               ("slicer", "slicer.ScriptedLoadableModule", "qt")}
+def panel(monkeypatch):
+    """Names that the module uses beside nodes: its classes and Qt."""
+    modules = {name: types.ModuleType(name) for name in ("slicer.ScriptedLoadableModule", "qt")}
     for base in ("", "Logic", "Widget"):
         name = "ScriptedLoadableModule" + base
         setattr(modules["slicer.ScriptedLoadableModule"], name, type(name, (), {}))
-    modules["slicer"].util = types.SimpleNamespace(arrayFromVTKMatrix=stand_in_array)
-    modules["slicer"].vtkOrientedGridTransform = stand_in_grid_transform
     for name, module in modules.items():
         monkeypatch.setitem(sys.modules, name, module)
     monkeypatch.syspath_prepend(EXAMPLES / "slicer" / "TetWarp")
+
+
+@pytest.fixture
+def slicer(panel, monkeypatch):
+    """Names of Slicer's libraries that the module uses."""
+    module = types.ModuleType("slicer")
+    module.util = types.SimpleNamespace(arrayFromVTKMatrix=stand_in_array)
+    module.vtkOrientedGridTransform = stand_in_grid_transform
+    monkeypatch.setitem(sys.modules, "slicer", module)
 
 
 def test_the_logic_of_the_slicer_module_fills_its_nodes(slicer, scan):
@@ -204,6 +220,51 @@ def test_the_logic_of_the_slicer_module_fills_its_nodes(slicer, scan):
     assert output.GetImageData().GetDimensions() == tuple(reversed(volume.shape))
     assert transform.transform.GetDisplacementGrid().GetNumberOfPoints() == volume.array.size
     assert field.values.shape == (*volume.shape, 3)
+
+
+def test_nodes_of_slicer_follow_the_mesh(panel, scan):
+    """Nodes, scene and grid transform of Slicer's own libraries."""
+    pytest.importorskip("slicer_core")
+    import slicer
+
+    volume, mesh, bent = scan
+    matrix = matrix_of(volume.affine)
+    nodes = [slicer.vtkMRMLScalarVolumeNode() for _ in range(3)]
+    source, output, hardened = nodes
+    rest, deformed = slicer.vtkMRMLModelNode(), slicer.vtkMRMLModelNode()
+    transform = slicer.vtkMRMLGridTransformNode()
+    scene = slicer.vtkMRMLScene()
+    for node in (*nodes, rest, deformed, transform):
+        scene.AddNode(node)
+    for node in (source, hardened):
+        node.SetAndObserveImageData(vtk_image(volume))
+        node.SetIJKToRASMatrix(matrix)
+    rest.SetAndObserveMesh(vtk_mesh(*mesh))
+    deformed.SetAndObserveMesh(vtk_mesh(bent, mesh.cells))
+    module = load(EXAMPLES / "slicer" / "TetWarp" / "TetWarp.py")
+
+    result, field = module.TetWarpLogic().process(
+        source, rest, deformed, output, transform, outside="nearest")
+
+    assert np.array_equal(slicer.util.arrayFromVolume(output), result.volume)
+    assert output.GetDisplayNode() is not None
+    centers = volume.grid.points().reshape(-1, 3)
+    from_parent = transform.GetTransformFromParent()
+    places = np.array([from_parent.TransformPoint(center) for center in centers])
+    assert np.abs(places - centers - field.values.reshape(-1, 3)).max() < 1e-9
+    inside = tetwarp.transform_points(centers, *mesh, bent, inverse=True, reference=volume)
+    covered = ~np.isnan(inside[:, 0])
+    assert np.abs(places - inside)[covered].max() < 1e-4
+    # A volume that is hardened under the transform is the warped one, on the grid that Slicer makes.
+    hardened.SetAndObserveTransformNodeID(transform.GetID())
+    assert hardened.HardenTransform()
+    hardened.GetIJKToRASMatrix(matrix)
+    samples = slicer.util.arrayFromVolume(hardened)
+    grid = tetwarp.Grid.from_affine(samples.shape, stand_in_array(matrix))
+    expected = tetwarp.warp(volume, *mesh, bent, reference=grid, outputs="mask")
+    covered = expected.mask > 0
+    error = np.abs(samples - expected.volume)[covered]
+    assert covered.mean() > 0.5 and error.mean() < 0.01 * np.ptp(volume.array), error.mean()
 
 
 class StandInSofa:

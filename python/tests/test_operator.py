@@ -117,7 +117,7 @@ def test_results_go_where_they_should(volume, mesh, twisted, samples):
 
 
 @pytest.mark.parametrize("change, message", [
-    ({"interpolator": "labels"}, "filter: labels is not linear"),
+    ({"interpolator": "labels"}, "interpolator: labels is not linear"),
     ({"interpolator": "sinc"}, "interpolator: "),
     ({"outside": "falloff"}, "outside: the operator has no displacements beyond the mesh"),
     ({"intensity": "density"}, "intensity: the operator has no densities; choose value or"),

@@ -32,10 +32,11 @@ from ._files import MeshFile, VolumeHeader, read, read_header, write
 from ._grid import Grid
 from ._mesh import Mesh, Surface, boundary_surface, deform, isosurface, lattice_mesh
 from ._operator import WarpOperator
+from ._result import WarpResult
 from ._simulate import Contacts, Simulator, StepRecord, shipped_scene, shipped_scenes
 from ._tracker import AdhesionStep, ContactRecords, ContactTracker, TrackedContacts
 from ._volume import Volume, phantom
-from ._warp import Warper, WarpResult, warp
+from ._warp import Warper, warp
 
 __all__ = [
     "AdhesionStep",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import os
 import sys
 from typing import Any, Callable, Sequence
 
@@ -14,6 +15,7 @@ PIXEL_TYPES = (
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64",
 )
 _NO_CELLS = {4: np.empty((0, 4), np.int32), 8: np.empty((0, 8), np.int32)}
+_FLOAT64, _INT32 = np.dtype(np.float64), np.dtype(np.int32)
 
 
 def describe(array: np.ndarray) -> str:
@@ -93,11 +95,26 @@ def check_samples(name: str, shape: tuple[int, ...], dtype: str) -> None:
 
 def samples_of(value: Any, name: str) -> np.ndarray:
     """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
+    if isinstance(value, (str, os.PathLike)):
+        raise ValueError(f"{name}: expected samples, got the name {value!r}; tetwarp.read reads it")
     array = array_of(value, name)
     check_samples(name, array.shape, array.dtype.newbyteorder("=").name)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
     return np.ascontiguousarray(array)
+
+
+def renamed(error: Exception, names: dict[str, str]) -> Exception:
+    """An error of the library with the name that the argument has in this package."""
+    name, colon, rest = str(error).partition(":")
+    return type(error)(f"{names[name]}:{rest}") if colon and name in names else error
+
+
+def word_of(value: Any, name: str) -> str:
+    """A word; which ones there are is checked by the library."""
+    if not isinstance(value, str):
+        raise ValueError(f"{name}: expected a word, got {value!r}")
+    return value
 
 
 def number_of(value: Any, name: str) -> float:
@@ -106,6 +123,13 @@ def number_of(value: Any, name: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise ValueError(f"{name}: expected a number, got {value!r}") from None
+
+
+def pair_of(value: Any, name: str) -> tuple[float, float]:
+    """Two numbers."""
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        raise ValueError(f"{name}: expected a pair of numbers, got {value!r}")
+    return number_of(value[0], name), number_of(value[1], name)
 
 
 def integer_of(value: Any, name: str) -> int:
@@ -130,23 +154,39 @@ def integers_of(value: Any, name: str, dtype: Any = np.int32) -> np.ndarray:
 def nodes_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Positions of nodes: as points_of(), and finite."""
     array = points_of(value, name, count)
-    finite = np.isfinite(array)
-    if not finite.all():
-        row = int(finite.all(axis=1).argmin())
-        raise ValueError(f"{name}: expected finite positions, row {row} is not")
+    check_finite(array, name)
     return array
 
 
-def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
-    """Positions of shape (n, 3), float64 in C order; copied only if they are not."""
+def check_finite(points: np.ndarray, name: str) -> None:
+    """Raises ValueError if a position is not finite."""
+    finite = np.isfinite(points)
+    if not finite.all():
+        row = int(finite.all(axis=1).argmin())
+        raise ValueError(f"{name}: expected finite positions, row {row} is not")
+
+
+def _is_plain(value: Any, dtype: np.dtype) -> bool:
+    """Whether it is an array of NumPy of this type in C order."""
+    return type(value) is np.ndarray and value.dtype is dtype and value.flags.c_contiguous
+
+
+def _floats_of(value: Any, name: str) -> np.ndarray:
+    """Numbers as float64 in C order."""
     array = array_of(value, name) if is_foreign(value) else value
     try:
         array = np.asarray(array)
         if not np.can_cast(array.dtype, np.float64, "same_kind"):
             raise TypeError
-        array = np.ascontiguousarray(array, dtype=np.float64)
+        return np.ascontiguousarray(array, dtype=np.float64)
     except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected an array of numbers of shape (n, 3)") from None
+        hint = "; *mesh gives nodes and cells of a mesh" if hasattr(value, "cells") else ""
+        raise ValueError(f"{name}: expected an array of numbers of shape (n, 3){hint}") from None
+
+
+def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
+    """Positions of shape (n, 3), float64 in C order; copied only if they are not."""
+    array = value if _is_plain(value, _FLOAT64) else _floats_of(value, name)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name}: expected shape (n, 3), x y z per row, got {array.shape}")
     if count is not None and array.shape[0] != count:
@@ -154,14 +194,22 @@ def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     return array
 
 
-def _indices_of(array: np.ndarray, name: str, node_count: int) -> np.ndarray:
-    if array.dtype.kind not in "iu":
-        raise ValueError(f"{name}: expected integers, numbers of nodes, got {array.dtype}")
+def check_indices(array: np.ndarray, name: str, node_count: int) -> None:
+    """Raises ValueError if a number is none of a node."""
     if array.size and (array.min() < 0 or array.max() >= node_count):
         wrong = int(array.min()) if array.min() < 0 else int(array.max())
         raise ValueError(
             f"{name}: expected numbers of nodes from 0 to {node_count - 1}, found {wrong}"
         )
+
+
+def _integers(array: np.ndarray, name: str, node_count: int) -> np.ndarray:
+    """Numbers of nodes as int32 in C order; those that are int32 are not checked."""
+    if _is_plain(array, _INT32):
+        return array
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name}: expected integers, numbers of nodes, got {array.dtype}")
+    check_indices(array, name, node_count)  # before they are cut
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
@@ -172,7 +220,7 @@ def _cells_of_one_kind(value: Any, name: str, node_count: int) -> np.ndarray:
             f"{name}: expected shape (m, 4) for tetrahedra or (m, 8) for hexahedra, "
             f"got {array.shape}"
         )
-    return _indices_of(array, name, node_count)
+    return _integers(array, name, node_count)
 
 
 def triangles_of(value: Any, name: str, node_count: int) -> np.ndarray:
@@ -180,11 +228,13 @@ def triangles_of(value: Any, name: str, node_count: int) -> np.ndarray:
     array = array_of(value, name)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name}: expected shape (m, 3), got {array.shape}")
-    return _indices_of(array, name, node_count)
+    triangles = _integers(array, name, node_count)
+    check_indices(triangles, name, node_count)
+    return triangles
 
 
-def cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Tetrahedra (m, 4) and hexahedra (m, 8) as int32; `value` is one of them or a pair."""
+def given_cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.ndarray]:
+    """As cells_of(); numbers of nodes that are int32 are not checked."""
     if isinstance(value, (tuple, list)) and len(value) == 2 and np.ndim(value[0]) == 2:
         parts = [_cells_of_one_kind(part, name, node_count) for part in value]
         if [part.shape[1] for part in parts] != [4, 8]:
@@ -197,6 +247,14 @@ def cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.nda
     if len(tets) + len(hexes) == 0:
         raise ValueError(f"{name}: expected at least one cell")
     return tets, hexes
+
+
+def cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Tetrahedra (m, 4) and hexahedra (m, 8) as int32; `value` is one of them or a pair."""
+    cells = given_cells_of(value, name, node_count)
+    for part in cells:
+        check_indices(part, name, node_count)
+    return cells
 
 
 def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:

@@ -56,6 +56,9 @@ def autograd_warp(
         raise ImportError(
             "autograd_warp: expected PyTorch; python3 -m pip install torch"
         ) from None
+    for name, value in (("volume", volume), ("deformed", deformed)):
+        if not hasattr(value, "detach"):
+            raise ValueError(f"{name}: expected a tensor of PyTorch, got {type(value).__name__}")
     grid = make_grid(tuple(volume.shape[:3]), spacing, origin, direction, affine)
 
     def numbers(tensor: Any) -> np.ndarray:

@@ -173,13 +173,16 @@ def mesh_from(mesh: Any) -> Mesh:
     Raises
     ------
     ValueError
-        it has none, or cells of other volume elements, which would be missing.
+        it is none of these, has none, or cells of other volume elements, which would be missing.
 
     >>> import types
     >>> blocks = {"tetra": np.array([(0, 1, 2, 3)])}
     >>> mesh_from(types.SimpleNamespace(points=np.eye(4, 3), cells_dict=blocks))
     Mesh(4 nodes, 1 cells)
     """
+    if not hasattr(mesh, "cells_dict"):
+        raise ValueError("mesh: expected a mesh of meshio or an UnstructuredGrid of PyVista, got "
+                         f"{type(mesh).__name__}")
     kinds = {10: "tetra", 12: "hexahedron"}  # numbers of VTK
     blocks: dict[Any, Any] = {}
     for kind, part in mesh.cells_dict.items():

@@ -9,7 +9,7 @@ from typing import Any, Callable, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import array_of, integer_of, integers_of, numbers_of
+from ._arrays import array_of, integer_of, integers_of, number_of, numbers_of, word_of
 
 
 class Csr(NamedTuple):
@@ -153,7 +153,7 @@ class ContactProblem:
             if "time_step" not in self.adhesion:
                 raise ValueError("adhesion: expected time_step [s]")
             self.adhesion = {
-                name: float(value) if name == "time_step"
+                name: number_of(value, "adhesion.time_step") if name == "time_step"
                 else numbers_of(value, f"adhesion.{name}")
                 for name, value in self.adhesion.items()
             }
@@ -235,10 +235,12 @@ class ContactSolver:
         threads: int = 0,
     ) -> None:
         self._solver = _core.ContactSolver(
-            law=law, rule=rule, method=method, measure=measure, tolerance=float(tolerance),
-            max_sweeps=integer_of(max_sweeps, "max_sweeps"), recovery_speed=float(recovery_speed),
-            max_seconds=float(max_seconds), backend=backend, device=integer_of(device, "device"),
-            threads=integer_of(threads, "threads"),
+            law=word_of(law, "law"), rule=word_of(rule, "rule"), method=word_of(method, "method"),
+            measure=word_of(measure, "measure"), tolerance=number_of(tolerance, "tolerance"),
+            max_sweeps=integer_of(max_sweeps, "max_sweeps"),
+            recovery_speed=number_of(recovery_speed, "recovery_speed"),
+            max_seconds=number_of(max_seconds, "max_seconds"), backend=word_of(backend, "backend"),
+            device=integer_of(device, "device"), threads=integer_of(threads, "threads"),
         )
 
     def solve(

@@ -11,8 +11,9 @@ from . import _core
 from ._arrays import cells_of, maker_of, nodes_of, number_of, points_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
+from ._result import WarpResult
 from ._volume import Volume
-from ._warp import Warper, WarpResult
+from ._warp import Warper
 
 _CONVENTIONS = {"resampling": "displacement", "modeling": "forward"}
 

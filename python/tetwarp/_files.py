@@ -9,13 +9,14 @@ from typing import Any, Iterator, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, integer_of, nodes_of, triangles_of
+from ._arrays import cells_of, integer_of, nodes_of, number_of, triangles_of
 from ._contact import ContactProblem
 from ._fields import Field
 from ._grid import Grid, grid_from_core
 from ._mesh import Mesh, Surface, joined_cells
+from ._packages import MeshioFile, is_lacking, read_image, read_surface
+from ._result import WarpResult
 from ._volume import Volume
-from ._warp import WarpResult
 
 _ITK_FIELDS = ("tetwarp_displacement", "tetwarp_forward")
 
@@ -38,7 +39,14 @@ class MeshFile:
     """
 
     def __init__(self, path: Any, *, rest_step: int = 0, axes: str = "ras") -> None:
-        self._file = _core.MeshFile(os.fspath(path), integer_of(rest_step, "rest_step"), axes)
+        name, step = os.fspath(path), integer_of(rest_step, "rest_step")
+        self._file: Any
+        try:
+            self._file = _core.MeshFile(name, step, axes)
+        except _core.IoError as error:
+            if not is_lacking(error):
+                raise
+            self._file = MeshioFile(name, axes, error)
         points, tets, hexes = self._file.mesh()
         self.mesh = Mesh(points, joined_cells(tets, hexes))
         self.times: list[float] = list(self._file.times)
@@ -123,15 +131,21 @@ def read(
     name = os.fspath(path)
     if _core.has_mesh_extension(name):
         return MeshFile(name, axes=axes)
-    if _core.has_surface_extension(name):
-        return Surface(*_core.read_surface(name))
-    kind = _core.kind_of(name)
-    if kind == "mesh":
-        return MeshFile(name)
-    if kind == "contact problem":
-        return ContactProblem(**_core.read_contact_problem(name))
-    samples, grid, read_name, nifti = _core.read_volume(
-        name, array, integer_of(step, "step"), axes, bool(labels))
+    is_surface = _core.has_surface_extension(name)
+    try:
+        if is_surface:
+            return Surface(*_core.read_surface(name))
+        kind = _core.kind_of(name)
+        if kind == "mesh":
+            return MeshFile(name)
+        if kind == "contact problem":
+            return ContactProblem(**_core.read_contact_problem(name))
+        samples, grid, read_name, nifti = _core.read_volume(
+            name, array, integer_of(step, "step"), axes, bool(labels))
+    except _core.IoError as error:
+        if not is_lacking(error):
+            raise
+        return read_surface(name, error) if is_surface else read_image(name, array, error)
     return Volume(samples, grid_from_core(grid), read_name, nifti)
 
 
@@ -189,8 +203,8 @@ def _write_volumes(
                 raise ValueError(f"value[{number}]: expected shape and type of value[0]")
         arrays = [_entry(first.name, [volume.array for volume in volumes], first.nifti)]
     _core.write_volumes(
-        path, first.grid._core(), arrays, [float(t) for t in times or ()],
-        integer_of(compress, "compress")
+        path, first.grid._core(), arrays, [number_of(t, "times") for t in times or ()],
+        integer_of(compress, "compress"),
     )
 
 
@@ -205,8 +219,22 @@ def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Sequence[float] | N
     if len(times) != len(moved):
         raise ValueError(f"times: expected {len(moved)}, one per step, got {len(times)}")
     _core.write_mesh(
-        path, points, tets, hexes, [step - points for step in moved], [float(t) for t in times]
+        path, points, tets, hexes, [step - points for step in moved],
+        [number_of(t, "times") for t in times],
     )
+
+
+_VTKHDF = (".vtkhdf", ".hdf", ".h5")
+_IMAGES = (".nii", ".nii.gz", ".nrrd", ".mha", ".mhd", ".mgh", ".mgz", ".vti")
+
+
+def _check_ending(path: str, is_mesh: bool) -> None:
+    """Raises ValueError if a name is that of another format."""
+    endings = _VTKHDF if is_mesh else _VTKHDF + _IMAGES
+    if not path.lower().endswith(endings):
+        kind = "mesh or a surface" if is_mesh else "volume"
+        raise ValueError(f"path: {path}: expected a name of a {kind}, which ends in "
+                         f"{', '.join(endings)}")
 
 
 def write(
@@ -222,8 +250,9 @@ def write(
 
     Parameters
     ----------
-    path : of volumes ``.nii``, ``.nii.gz``, or any other name: VTKHDF, as of meshes and
-        surfaces; of contact problems: FCLIB
+    path : its ending is the format: VTKHDF (``.vtkhdf``, ``.hdf``, ``.h5``), of meshes and surfaces
+        always; of volumes also ``.nii``, ``.nii.gz``, ``.nrrd``, ``.mha``, ``.mhd``, ``.mgh``,
+        ``.mgz`` or ``.vti``; contact problems are FCLIB under any name
     value : Volume, Field or samples (with `grid`), a list of these on one grid, a WarpResult, a
         Mesh, a Surface or a ContactProblem; a NIfTI file takes one array
     grid : of samples
@@ -246,6 +275,8 @@ def write(
     ['a', 'b']
     """
     name = os.fspath(path)
+    if not isinstance(value, ContactProblem):
+        _check_ending(name, isinstance(value, (Mesh, Surface)))
     if isinstance(value, Mesh):
         _write_mesh(name, value, deformed, times)
     elif isinstance(value, Surface):

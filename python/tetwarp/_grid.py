@@ -56,7 +56,10 @@ class Grid:
         set_(self, "spacing", vector_of(self.spacing, "spacing"))
         set_(self, "origin", vector_of(self.origin, "origin"))
         set_(self, "direction", tuple(tuple(float(x) for x in row) for row in rows.reshape(3, 3)))
-        self._core()
+        set_(self, "_made", _core.Grid(self.shape[::-1], self.origin, self.spacing, list(rows)))
+
+    def __reduce__(self) -> Any:
+        return Grid, (self.shape, self.spacing, self.origin, self.direction)
 
     @classmethod
     def from_affine(cls, shape: Any, affine: Any) -> Grid:
@@ -93,9 +96,7 @@ class Grid:
         return index @ np.array(self.direction).T + np.array(self.origin)
 
     def _core(self) -> _core.Grid:
-        z, y, x = self.shape
-        rows = [number for row in self.direction for number in row]
-        return _core.Grid((x, y, z), self.origin, self.spacing, rows)
+        return self.__dict__["_made"]
 
 
 def grid_from_core(grid: _core.Grid) -> Grid:
@@ -116,7 +117,7 @@ def make_grid(shape: Any, spacing: Any, origin: Any, direction: Any, affine: Any
     )
 
 
-def reference_grid(reference: Any) -> Grid:
+def reference_grid(reference: Any, name: str = "reference") -> Grid:
     """The grid of a Grid, of what has an attribute `grid`, or of an image of nibabel or ITK."""
     if isinstance(reference, Grid):
         return reference
@@ -130,6 +131,6 @@ def reference_grid(reference: Any) -> Grid:
             np.reshape(reference.GetDirection(), (3, 3)), None,
         )
     raise ValueError(
-        "reference: expected a tetwarp.Grid, a Volume, a result of a warp, or an image of nibabel "
+        f"{name}: expected a tetwarp.Grid, a Volume, a result of a warp, or an image of nibabel "
         f"or SimpleITK, got {type(reference).__name__}"
     )

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, integer_of, nodes_of, vector_of
+from ._arrays import cells_of, integer_of, nodes_of, number_of, vector_of, word_of
 from ._volume import volume_of
 
 Cells = Any  # (m, 4), (m, 8), or a pair of both
@@ -89,7 +89,7 @@ def lattice_mesh(
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
     made = _core.lattice_mesh(
         source.array, source.grid._core(), integer_of(cells, "cells"),
-        None if threshold is None else float(threshold), bool(hexahedra),
+        None if threshold is None else number_of(threshold, "threshold"), bool(hexahedra),
     )
     return Mesh(*made)
 
@@ -131,11 +131,11 @@ def deform(
     tets, hexes = cells_of(cells, "cells", len(nodes))
     if axis not in _AXES:
         raise ValueError(f"axis: expected x, y or z, got {axis!r}")
-    if not 0 <= seed < 2**64:
+    if not 0 <= integer_of(seed, "seed") < 2**64:
         raise ValueError(f"seed: expected a number from 0 to 2^64 - 1, got {seed}")
     return np.asarray(_core.deform(
-        nodes, tets, hexes, kind, float(amount), _AXES[axis], integer_of(seed, "seed"),
-        vector_of(offset, "offset"), float(time),
+        nodes, tets, hexes, word_of(kind, "kind"), number_of(amount, "amount"), _AXES[axis],
+        integer_of(seed, "seed"), vector_of(offset, "offset"), number_of(time, "time"),
     ))
 
 
@@ -173,7 +173,8 @@ def isosurface(
     Surface(60 points, 116 triangles)
     """
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
-    made = _core.isosurface(source.array, source.grid._core(), float(value), triangles)
+    about = None if triangles is None else integer_of(triangles, "triangles")
+    made = _core.isosurface(source.array, source.grid._core(), number_of(value, "value"), about)
     return Surface(*made)
 
 

@@ -7,7 +7,17 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import array_of, cells_of, describe, integer_of, maker_of, nodes_of, out_of
+from ._arrays import (
+    array_of,
+    cells_of,
+    describe,
+    integer_of,
+    maker_of,
+    nodes_of,
+    out_of,
+    renamed,
+    word_of,
+)
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 
@@ -22,7 +32,7 @@ def _source_grid(source: Any, spacing: Any, origin: Any, direction: Any, affine:
         return make_grid(source.shape[:3], spacing, origin, direction, affine)
     if any(x is not None for x in (spacing, origin, direction, affine)):
         raise ValueError("source: it has a grid; leave out spacing, origin, direction and affine")
-    return reference_grid(source)
+    return reference_grid(source, "source")
 
 
 class WarpOperator:
@@ -87,12 +97,17 @@ class WarpOperator:
         self._source = _source_grid(source, spacing, origin, direction, affine)
         self._output = self._source if reference is None else reference_grid(reference)
         points = nodes_of(rest, "rest")
-        self._core = _core.WarpOperator(
-            self._source._core(), points, *cells_of(cells, "cells", len(points)),
-            nodes_of(deformed, "deformed", len(points)), interpolator=interpolator,
-            intensity=intensity, outside=outside, output_grid=self._output._core(),
-            mask=self._mask_of(mask), threads=integer_of(threads, "threads"),
-        )
+        try:
+            self._core = _core.WarpOperator(
+                self._source._core(), points, *cells_of(cells, "cells", len(points)),
+                nodes_of(deformed, "deformed", len(points)),
+                interpolator=word_of(interpolator, "interpolator"),
+                intensity=word_of(intensity, "intensity"), outside=word_of(outside, "outside"),
+                output_grid=self._output._core(), mask=self._mask_of(mask),
+                threads=integer_of(threads, "threads"),
+            )
+        except ValueError as error:
+            raise renamed(error, {"filter": "interpolator"}) from None
 
     def _mask_of(self, mask: Any) -> np.ndarray:
         if mask is None:

@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterator, Union
 import numpy as np
 
 from . import _core
-from ._arrays import integer_of, vector_of
+from ._arrays import integer_of, number_of, vector_of, word_of
 from ._grid import grid_from_core
 from ._mesh import Mesh, Surface
 from ._volume import Volume
@@ -146,9 +146,10 @@ class Simulator:
                 f"scene: expected a dict or the path of a file, got {type(scene).__name__}"
             )
         self._simulator = _core.Simulator(
-            file, text, os.fspath(folder), backend=backend, device=integer_of(device, "device"),
+            file, text, os.fspath(folder), backend=word_of(backend, "backend"),
+            device=integer_of(device, "device"),
             threads=integer_of(threads, "threads"), untangle=bool(untangle),
-            max_step_seconds=float(max_step_seconds),
+            max_step_seconds=number_of(max_step_seconds, "max_step_seconds"),
         )
         self.names: list[str] = list(self._simulator.names)
 
@@ -177,7 +178,7 @@ class Simulator:
         KeyboardInterrupt
             Ctrl-C; the step in which it came has no effect.
         """
-        if count < 0:
+        if integer_of(count, "count") < 0:
             raise ValueError(f"count: expected 0 or more steps, got {count}")
         return all(self._simulator.step(progress) for _ in range(count))
 
@@ -290,9 +291,9 @@ class Simulator:
             name,
             self.names[self._index(body)],
             vector_of(center, "center"),
-            float(radius),
-            float(stiffness),
-            float(damping),
+            number_of(radius, "radius"),
+            number_of(stiffness, "stiffness"),
+            number_of(damping, "damping"),
         )
 
     def move_handle(self, name: str, displacement: Any) -> None:

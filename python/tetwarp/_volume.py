@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import samples_of
+from ._arrays import samples_of, word_of
 from ._grid import Grid, grid_from_core, make_grid
 
 
@@ -93,6 +93,6 @@ def phantom(
     >>> phantom(shape=(61, 80, 128))
     Volume((61, 80, 128) of float32, spacing (3.0, 3.0, 6.0), name 'torso')
     """
-    z, y, x = Grid(shape, spacing).shape
-    array, grid = _core.phantom(kind, (x, y, z), tuple(float(s) for s in spacing))
+    wanted = Grid(shape, spacing)
+    array, grid = _core.phantom(word_of(kind, "kind"), wanted.shape[::-1], wanted.spacing)
     return Volume(array, grid_from_core(grid), kind)

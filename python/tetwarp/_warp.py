@@ -3,70 +3,34 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
 from typing import Any, Callable, Sequence
 
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, describe, integer_of, maker_of, nodes_of, number_of, out_of
+from ._arrays import (
+    check_finite,
+    check_indices,
+    given_cells_of,
+    integer_of,
+    maker_of,
+    number_of,
+    out_of,
+    pair_of,
+    points_of,
+    renamed,
+    word_of,
+)
 from ._device import Device, on_device, type_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
+from ._result import EXTRAS, WarpResult
 from ._volume import Volume, volume_of
 
 Progress = Callable[[float], Any]
-
-#: Further outputs of a warp: name, type, components.
-EXTRAS: dict[str, tuple[Any, int]] = {
-    "mask": (np.uint8, 1),
-    "owner": (np.int32, 1),
-    "displacement": (np.float32, 3),
-    "jacobian": (np.float32, 1),
-    "gradient": (np.float32, 9),
-    "strain": (np.float32, 6),
-    "forward": (np.float32, 3),
-}
-
-
-@dataclass(eq=False)
-class WarpResult:
-    """What a warp has made.
-
-    volume : the warped samples, (z, y, x) or (z, y, x, c), of the type of the source; a tensor or
-        array of the library that the source was of
-    grid : of all arrays
-    report : counts of voxels and tetrahedra, seconds of the stages, totals, back end
-    volumes : one array per source; `volume` is the first
-    extras : the arrays of `outputs` by name, which are attributes as well: ``result.mask``
-    names, nifti : per source its name and what its NIfTI header says, for files
-
-    `write` writes it with all its arrays, as the command does.
-    """
-
-    volume: np.ndarray
-    grid: Grid
-    report: dict[str, Any]
-    volumes: tuple[np.ndarray, ...] = ()
-    extras: dict[str, np.ndarray] = field(default_factory=dict)
-    names: tuple[str, ...] = ("values",)
-    nifti: tuple[dict[str, Any] | None, ...] = (None,)
-
-    def __getattr__(self, name: str) -> np.ndarray:
-        extras = self.__dict__.get("extras", {})
-        if name in extras:
-            return extras[name]
-        hint = f"; ask for it by outputs=({name!r},)" if name in EXTRAS else ""
-        raise AttributeError(f"WarpResult has no {name!r}{hint}")
-
-    def __repr__(self) -> str:
-        counts = self.report["counts"]
-        share = counts["covered"] / max(counts["voxels"], 1)
-        extras = f", with {', '.join(self.extras)}" if self.extras else ""
-        return (
-            f"WarpResult({describe(self.volume)}{extras}; {share:.1%} of {counts['voxels']} voxels "
-            f"covered, {1e3 * self.report['timings']['total']:.1f} ms on {self.report['backend']})"
-        )
+#: Names of arguments in the library's errors, and here.
+_RENAMED = {"background": "default_value", "filter": "interpolator", "quantities": "quantity",
+            "source": "volume", "sources": "volume"}
 
 
 def _sources_of(
@@ -124,6 +88,9 @@ class Warper:
     spacing, origin, direction, affine : of the grid of arrays, see Grid
     interpolator : ``"linear"``, ``"nearest"``, ``"cubic"``, ``"bspline"``, ``"lanczos"`` or
         ``"labels"`` (64-bit integers: ``"nearest"`` and ``"labels"`` only)
+    label_rule : the label of a voxel is that of most ``"linear"`` weight, of most exact
+        ``"volume"`` in its box, or of most ``"gaussian"`` weight, as of sitkLabelGaussian
+    label_gaussian : standard deviation [source voxel] and cutoff [standard deviation]
     default_value : of voxels that no cell covers
     outside : ``"background"``: they get `default_value`; ``"identity"``: the source at the same
         position; ``"nearest"``: the source displaced as the nearest point of the mesh's surface;
@@ -170,6 +137,8 @@ class Warper:
         direction: Any = None,
         affine: Any = None,
         interpolator: str = "linear",
+        label_rule: str = "linear",
+        label_gaussian: tuple[float, float] = (1.0, 1.0),
         default_value: float = 0.0,
         outside: str = "background",
         falloff: float = 0.0,
@@ -182,6 +151,8 @@ class Warper:
         device: int = 0,
         threads: int = 0,
     ) -> None:
+        if falloff and outside != "falloff":
+            raise ValueError(f'falloff: is for outside="falloff", got outside={outside!r}')
         given = list(volume) if isinstance(volume, (list, tuple)) else [volume]
         self._device = Device(given[0], "volume") if given and on_device(given[0]) else None
         if self._device is None:
@@ -197,19 +168,32 @@ class Warper:
             backend, device = self._device.backend(backend), self._device.number
         self._grid = grid if reference is None else reference_grid(reference)
         self._makers = [maker_of(one) for one in given]
-        points = nodes_of(rest, "rest")
+        points = points_of(rest, "rest")
+        corners = given_cells_of(cells, "cells", len(points))
         self._node_count = len(points)
-        self._warper: _core.Warper | None = _core.Warper(
-            self._arrays, grid._core(), points,
-            *cells_of(cells, "cells", len(points)),
-            interpolator=interpolator, overshoot=overshoot, antialias=bool(antialias),
-            intensity=intensity, quantities=_quantities_of(quantity, len(given)),
-            outside=outside, falloff=number_of(falloff, "falloff"),
-            default_value=number_of(default_value, "default_value"),
-            output_grid=None if reference is None else self._grid._core(),
-            backend=backend, device=integer_of(device, "device"),
-            threads=integer_of(threads, "threads"),
-        )
+        try:
+            self._warper: _core.Warper | None = _core.Warper(
+                self._arrays, grid._core(), points, *corners,
+                interpolator=interpolator, label_rule=label_rule,
+                label_gaussian=pair_of(label_gaussian, "label_gaussian"),
+                overshoot=overshoot, antialias=bool(antialias),
+                intensity=intensity, quantities=_quantities_of(quantity, len(given)),
+                outside=outside, falloff=number_of(falloff, "falloff"),
+                default_value=number_of(default_value, "default_value"),
+                output_grid=None if reference is None else self._grid._core(),
+                backend=backend, device=integer_of(device, "device"),
+                threads=integer_of(threads, "threads"),
+            )
+        except (TypeError, ValueError) as error:  # the library has other names for arguments
+            check_finite(points, "rest")
+            for part in corners:
+                check_indices(part, "cells", len(points))
+            for name, word in (("interpolator", interpolator), ("label_rule", label_rule),
+                               ("overshoot", overshoot),
+                               ("intensity", intensity), ("outside", outside),
+                               ("backend", backend)):
+                word_of(word, name)
+            raise renamed(error, _RENAMED) from None
         self._is_source_grid = self._grid == grid
 
     @property
@@ -259,14 +243,21 @@ class Warper:
             shape = (self._node_count, 3)
             positions = self._device.array_of(deformed, "deformed", shape, "float64")
         else:
-            positions = nodes_of(deformed, "deformed", self._node_count)
+            positions = points_of(deformed, "deformed", self._node_count)
         names = extras_of(outputs, EXTRAS)
         if "forward" in names and not self._is_source_grid:
             raise ValueError("outputs: 'forward' is on the grid of the source; give no reference")
         arrays = self._outputs(out)
         extras = {name: self._extra(name) for name in names}
         stream = 0 if self._device is None else self._device.stream
-        report = warper.step(positions, arrays, extras, False, stream, progress)
+        try:
+            report = warper.step(positions, arrays, extras, False, stream, progress)
+        except (TypeError, ValueError):
+            if isinstance(positions, np.ndarray):
+                check_finite(positions, "deformed")
+            if progress is not None and not callable(progress):
+                raise ValueError(f"progress: expected a function, got {progress!r}") from None
+            raise
         if out is None and self._device is not None:
             volumes = tuple(arrays)
         elif out is None:
@@ -363,8 +354,8 @@ def warp(
     default_value : of voxels that no cell covers
     reference : Grid of the output, or something that has one; None: the grid of the source
     out, outputs, progress : see Warper.__call__
-    options : the other keywords of Warper: outside, falloff, overshoot, antialias, intensity,
-        quantity, backend, device, threads
+    options : the other keywords of Warper: label_rule, label_gaussian, outside, falloff, overshoot,
+        antialias, intensity, quantity, backend, device, threads
 
     Returns
     -------

@@ -78,6 +78,83 @@ TEST_F(FieldBatch, TakesDefaultsOfMeshesForMeshesAlone) {
   }
 }
 
+/// Also defaults whose value only warps by a mesh take, and those of fields of FSL.
+TEST_F(FieldBatch, TakesDefaultsOnlyWhereTheyMeanSomething) {
+  made({"warp", "volume.vtkhdf", "field.vtkhdf", "-o", "field.nii", "--filter", "labels"});
+  made({"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "mesh.nii", "--steps", "3", "--filter",
+        "labels", "--label-rule", "volume"});
+  write_text(scene / "jobs.csv",
+             "volume,mesh,transform,output,steps\n"
+             "volume.vtkhdf,,field.vtkhdf,one.nii,\n"
+             "volume.vtkhdf,field.vtkhdf,,two.nii,\n"
+             "volume.vtkhdf,mesh.vtkhdf,,three.nii,3\n");
+  for (const Names& defaults : {Names{"--filter", "labels", "--label-rule", "volume"},
+                                {"--outside", "nearest"},
+                                {"--outside", "falloff:5"},
+                                {"--backend", "reference"},
+                                {"--grid", "bounds"},
+                                {"--resume"}}) {
+    const bool is_first = defaults.front() == "--filter";
+    for (const char* jobs : {"1", "3"}) {
+      if (!is_first && *jobs == '3') continue;
+      Names words{"warp", "--batch", "jobs.csv", "--jobs", jobs};
+      words.insert(words.end(), defaults.begin(), defaults.end());
+      made(words);
+      for (const auto& [output, alone] : {std::pair{"one.nii", "field.nii"},
+                                          {"two.nii", "field.nii"},
+                                          {"three.nii", "mesh.nii"}}) {
+        if (is_first) {
+          EXPECT_EQ(text_of(scene / output), text_of(scene / alone)) << output;
+        }
+        EXPECT_TRUE(fs::remove(scene / output)) << output;
+      }
+    }
+  }
+}
+
+TEST_F(FieldBatch, RefusesADefaultThatNoJobTakes) {
+  write_text(scene / "jobs.csv",
+             "volume,mesh,transform,output\n"
+             "volume.vtkhdf,,field.vtkhdf,one.nii\n"
+             "volume.vtkhdf,field.vtkhdf,,two.nii\n");
+  for (const auto& [defaults, line] :
+       {std::pair{Names{"--steps", "3"}, "--steps is for warps by a mesh; leave it out"},
+        {{"--outside", "nearest"}, "--outside nearest is for warps by a mesh; use background or"},
+        {{"--fsl", "relative"}, "--fsl is for warp fields of FSL, which are NIfTI images"},
+        {{"--resume"}, "--resume of a warp by a transform needs --provenance; add it"}}) {
+    Names words{"warp", "--batch", "jobs.csv"};
+    words.insert(words.end(), defaults.begin(), defaults.end());
+    const CommandResult result = run_command(scene, words);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_NE(result.err.find("jobs.csv: no job takes a default: " + std::string(line)),
+              std::string::npos)
+        << result.err;
+  }
+  write_text(scene / "jobs.csv", "volume,mesh,output,steps\nvolume.vtkhdf,mesh.vtkhdf,one.nii,3\n");
+  EXPECT_NE(run_command(scene, {"warp", "--batch", "jobs.csv", "--fsl", "relative"})
+                .err.find("no job takes a default: --fsl"),
+            std::string::npos);
+  EXPECT_FALSE(exists("one.nii") || exists("two.nii"));
+}
+
+TEST_F(FieldBatch, RefusesJobsWhoseFilesBesideOutputsAreTheSame) {
+  for (const std::string deformation : {R"(mesh.vtkhdf", "steps": 3)", R"(field.vtkhdf")"}) {
+    write_text(scene / "jobs/jobs.json",
+               R"({"jobs": [{"volume": "../volume.vtkhdf", "output": "a.nii", "provenance": true,
+                             "mesh": "../)" +
+                   deformation + R"(},
+                            {"volume": "../volume.vtkhdf", "output": "b.nii", "steps": 3,
+                             "mesh": "../mesh.vtkhdf", "report": "./a.nii.json"}]})");
+    const CommandResult result = run_command(scene, {"warp", "--batch", "jobs/jobs.json"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_NE(result.err.find("a.nii.json: job 1 and job 2 both write it"), std::string::npos)
+        << result.err;
+  }
+  EXPECT_FALSE(exists("jobs/a.nii") || exists("jobs/b.nii"));
+}
+
 TEST_F(FieldBatch, PlansAndRefusesJobs) {
   const auto batch = [&](const Names& more) {
     std::string jobs;

@@ -41,11 +41,38 @@ HandScene stack_scene(double youngs) {
   return scene;
 }
 
-HandScene sheet_scene(double stiffness) {
+HandScene tied_scene(double youngs, double spring) {
   HandScene scene;
   Model& model = scene.model;
   model = empty_model();
-  add_sheet(model, 6, 0.005, stiffness, 0.01);
+  BlockOptions block{.cells = {4, 4, 3}, .edge = 0.005, .youngs = youngs, .poisson = 0.4};
+  add_block(model, block);
+  block.origin[0] = 0.02;
+  const std::int32_t second = add_block(model, block);
+  const std::int32_t frame = add_frame(model, {0, 0, 0});
+  for (std::int32_t node = 0; node < second; node += 5) {
+    add_spring(model, node_point(model, node + 4), node_point(model, second + node), spring);
+  }
+  scene.make_surfaces(0.02);
+  for (const std::int32_t first : {0, second}) {
+    for (std::int32_t node = first; node < first + 25; node += 2) {
+      Touch touch;
+      touch.body_a = first == 0 ? 0 : 1;
+      touch.body_b = model.rigid.body[static_cast<std::size_t>(frame)];
+      touch.point_a = on_nodes({node - first, -1, -1}, {1, 0, 0});
+      touch.point_b = on_rigid(model.start.position[static_cast<std::size_t>(node)]);
+      touch.area = 1e-5;
+      scene.touches.push_back(touch);
+    }
+  }
+  return scene;
+}
+
+HandScene sheet_scene(double stiffness, std::int32_t cells) {
+  HandScene scene;
+  Model& model = scene.model;
+  model = empty_model();
+  add_sheet(model, cells, 0.005, stiffness, 0.01);
   const std::int32_t box = add_rigid(model, 0.02, {1e-6, 1e-6, 1e-6}, {0.015, 0.015, 0.005});
   const std::int32_t frame = add_frame(model, {0, 0, 0});
   scene.make_surfaces(0.02);
@@ -59,8 +86,11 @@ HandScene sheet_scene(double stiffness) {
     touch.area = 1e-5;
     scene.touches.push_back(touch);
   };
-  for (std::int32_t node = 0; node < 49; ++node) add_touch(node, frame, {0, 0, 0});
-  for (std::int32_t node = 8; node < 41; node += 4) add_touch(node, box, {0.015, 0.015, 0.005});
+  const std::int32_t count = model.node_count;
+  for (std::int32_t node = 0; node < count; ++node) add_touch(node, frame, {0, 0, 0});
+  for (std::int32_t node = cells + 2; node < count - cells - 2; node += 4) {
+    add_touch(node, box, {0.015, 0.015, 0.005});
+  }
   return scene;
 }
 

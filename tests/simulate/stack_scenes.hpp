@@ -12,9 +12,14 @@ constexpr double stack_step = 8e-3;  // [s]
 /// A stiff elastic block on a frame and a rigid box on it, all touching at many points.
 HandScene stack_scene(double youngs);
 
-/// A stiff sheet of 7 x 7 nodes on a frame, all touching, and a rigid box on some of them.
+/// Two elastic blocks side by side on a frame, tied to each other by springs.
+/// @param spring  stiffness of each [N/m]
+HandScene tied_scene(double youngs, double spring);
+
+/// A stiff sheet on a frame, all nodes touching, and a rigid box on some of them.
 /// @param stiffness  of its edges [N/m]
-HandScene sheet_scene(double stiffness);
+/// @param cells      along each side
+HandScene sheet_scene(double stiffness, std::int32_t cells = 6);
 
 /// Three elastic blocks on a frame. With 12 cells along each side there are groups of 169, 57 and
 /// 85 contacts of one body or of two.

@@ -25,6 +25,7 @@
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/common/json_text.hpp"
 #include "host/cli/job/job_plan.hpp"
+#include "host/cli/job/provenance.hpp"
 #include "host/cli/warp/batch_file.hpp"
 #include "host/cli/warp/job_process.hpp"
 #include "host/cli/warp/transform_job.hpp"
@@ -53,8 +54,8 @@ void write_report(const std::string& path, const Outcome& outcome, bool is_ended
   write_finished_file(path, json_text(report, 2) + "\n");
 }
 
-/// The files that a job will write. Where planning fails, e.g. because an earlier job makes the
-/// input, the output that the job names.
+/// The files that a job will write, reports included. Where planning fails, e.g. because an earlier
+/// job makes the input, the output that the job names.
 std::vector<std::string> files_written(const BatchJob& job) {
   if (!job.error.empty()) return {};
   std::vector<std::string> files;
@@ -64,8 +65,7 @@ std::vector<std::string> files_written(const BatchJob& job) {
   } catch (const std::exception&) {
     files = {job.arguments.output};
   }
-  if (!job.arguments.report.empty()) files.push_back(job.arguments.report);
-  return files;
+  return files_to_write(job.arguments, files);
 }
 
 /// Throws IoError when two jobs, or a job and the batch report, write the same file.

@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <system_error>
+#include <tetwarp/io.hpp>
+#include <tetwarp/transform_file.hpp>
 #include <utility>
 
 #include "host/cli/common/declare.hpp"
@@ -70,7 +73,8 @@ class JobReader {
   JobReader(fs::path folder, const CLI::App& defaults)
       : folder_(std::move(folder)), defaults_(defaults) {}
 
-  Words words_of(const Json& job) const {
+  /// @param is_by_transform  as of that function
+  Words words_of(const Json& job, bool is_by_transform) const {
     if (!job.is_object()) throw std::invalid_argument("is not a JSON object");
     Words files;
     Words options;
@@ -87,28 +91,68 @@ class JobReader {
       options.insert(options.end(), some.begin(), some.end());
     }
     for (const CLI::Option* option : defaults_.get_options()) {
-      const Words some = words_of_default(*option, job);
+      const Words some = words_of_default(*option, job, is_by_transform);
       options.insert(options.end(), some.begin(), some.end());
     }
     files.insert(files.end(), options.begin(), options.end());
     return files;
   }
 
+  /// Whether a job warps by a transform: by its key, or because the file called `mesh` is one.
+  bool is_by_transform(const Json& job) const {
+    if (!job.is_object() || job.contains("transform")) return job.is_object();
+    for (const std::string& file : located_names(job, "mesh")) {
+      try {
+        if (kind_of(file) == FileKind::nifti || is_transform_file(file)) return true;
+      } catch (const IoError&) {
+        // The job reports what is wrong with its file.
+      }
+    }
+    return false;
+  }
+
+  /// Why a job does not take a default, with a remedy; empty: it takes it.
+  std::string refusal(const CLI::Option& option, const Json& job, bool is_by_transform) const {
+    const std::string& name = option.get_lnames().front();
+    if (!job.is_object()) return {};
+    if (is_by_transform && name != "fsl") {
+      const bool has_provenance = job.contains("provenance")
+                                      ? job["provenance"] == true
+                                      : defaults_.get_option("--provenance")->count() > 0;
+      return transform_refusal(name, option.results(), has_provenance);
+    }
+    for (const std::string& file : located_names(job, deformation_key(job))) {
+      std::error_code error;
+      if (name != "fsl" || !fs::exists(file, error) || kind_of(file) == FileKind::nifti) continue;
+      return "--fsl is for warp fields of FSL, which are NIfTI images; leave it out";
+    }
+    return {};
+  }
+
+  /// Throws IoError for a default that no job takes.
+  /// @param path              the batch file
+  /// @param are_by_transform  of each job
+  void check_defaults(const std::string& path,
+                      const std::vector<Json>& jobs,
+                      const std::vector<bool>& are_by_transform) const {
+    for (const CLI::Option* option : defaults_.get_options()) {
+      if (!is_default(*option)) continue;
+      std::string reason;
+      for (std::size_t j = 0; j < jobs.size(); ++j) {
+        reason = refusal(*option, jobs[j], are_by_transform[j]);
+        if (reason.empty()) break;
+      }
+      if (!reason.empty()) throw IoError(path, "", "no job takes a default: " + reason);
+    }
+  }
+
   /// Stores the names of files that are given as text, for the report of a job that may have
   /// errors.
   void name_files(const Json& job, BatchJob& named) const {
-    const auto names = [&](const char* key) {
-      Words located_names;
-      const Json value = job.is_object() && job.contains(key) ? job[key] : Json();
-      for (const Json& one : value.is_array() ? value : Json::array({value})) {
-        if (one.is_string()) located_names.push_back(located(one.get<std::string>()));
-      }
-      return located_names;
-    };
-    named.volumes = names("volume");
+    named.volumes = located_names(job, "volume");
     if (!job.is_object()) return;
-    for (const std::string& mesh : names(deformation_key(job).c_str())) named.mesh = mesh;
-    for (const std::string& output : names("output")) named.output = output;
+    for (const std::string& mesh : located_names(job, deformation_key(job))) named.mesh = mesh;
+    for (const std::string& output : located_names(job, "output")) named.output = output;
   }
 
  private:
@@ -118,6 +162,16 @@ class JobReader {
   }
 
   std::string located(const std::string& path) const { return (folder_ / path).string(); }
+
+  /// The files of a key that are given as text.
+  Words located_names(const Json& job, const std::string& key) const {
+    Words names;
+    const Json value = job.is_object() && job.contains(key) ? job[key] : Json();
+    for (const Json& one : value.is_array() ? value : Json::array({value})) {
+      if (one.is_string()) names.push_back(located(one.get<std::string>()));
+    }
+    return names;
+  }
 
   Words words_of_key(const std::string& key, const Json& value) const {
     const CLI::Option* option = defaults_.get_option_no_throw("--" + key);
@@ -140,12 +194,18 @@ class JobReader {
     return option_words(key, texts);
   }
 
-  static Words words_of_default(const CLI::Option& option, const Json& job) {
-    if (option.count() == 0 || option.get_lnames().empty()) return {};
+  /// Whether an option of the command line is a default of jobs. With --batch, --report names the
+  /// report of the whole batch.
+  static bool is_default(const CLI::Option& option) {
+    if (option.count() == 0 || option.get_lnames().empty()) return false;
     const std::string& name = option.get_lnames().front();
-    // With --batch, --report names the report of the whole batch.
-    if (job.contains(name) || name == "report" || is_one_of(name, batch_options)) return {};
-    if (job.contains("transform") && !has_meaning_for_transforms(name)) return {};
+    return name != "report" && !is_one_of(name, batch_options);
+  }
+
+  Words words_of_default(const CLI::Option& option, const Json& job, bool is_by_transform) const {
+    if (!is_default(option)) return {};
+    const std::string& name = option.get_lnames().front();
+    if (job.contains(name) || !refusal(option, job, is_by_transform).empty()) return {};
     if (option.get_items_expected_max() == 0) return {"--" + name};
     return option_words(name, option.results());
   }
@@ -159,11 +219,15 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
   const JobReader reader(fs::path(path).parent_path(), defaults);
   std::vector<BatchJob> jobs;
   const std::string name = path + ": ";
-  for (const Json& job : read_job_list(path)) {
+  const std::vector<Json> list = read_job_list(path);
+  std::vector<bool> are_by_transform;
+  for (const Json& job : list) are_by_transform.push_back(reader.is_by_transform(job));
+  reader.check_defaults(path, list, are_by_transform);
+  for (std::size_t j = 0; j < list.size(); ++j) {
     BatchJob& parsed = jobs.emplace_back();
-    reader.name_files(job, parsed);
+    reader.name_files(list[j], parsed);
     try {
-      parsed.words = reader.words_of(job);
+      parsed.words = reader.words_of(list[j], are_by_transform[j]);
       parsed.arguments = parse_warp_arguments(parsed.words);
     } catch (const CLI::ParseError& error) {
       parsed.error = name + one_line(error.what());

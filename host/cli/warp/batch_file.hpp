@@ -21,9 +21,10 @@ struct BatchJob {
 };
 
 /// Reads a batch file. Relative paths in it start at its folder.
-/// @param defaults  options as given on the command line, for jobs that do not set them
-/// @throws IoError  when the file holds no list of jobs; an error inside a job is stored in that
-///                  job
+/// @param defaults  options as given on the command line, for jobs that do not set them and do not
+///                  refuse them
+/// @throws IoError  when the file holds no list of jobs, or no job takes a default; an error inside
+///                  a job is stored in that job
 std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults);
 
 }  // namespace tetwarp::cli

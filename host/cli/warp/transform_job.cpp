@@ -1,5 +1,5 @@
 /// @file transform_job.cpp
-/// Reads the transform and the volume, resamples and writes step by step.
+/// Checks the arguments of a warp by a transform, and runs it.
 #include "host/cli/warp/transform_job.hpp"
 
 #include <fmt/format.h>
@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
 #include <tetwarp/resample.hpp>
 #include <tetwarp/transform_file.hpp>
 #include <tetwarp/version.hpp>
-#include <variant>
 #include <vector>
 
 #include "host/base/parallel.hpp"
@@ -22,15 +20,14 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
-#include "host/cli/common/progress_bar.hpp"
 #include "host/cli/job/array_checks.hpp"
 #include "host/cli/job/output_grid.hpp"
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/provenance.hpp"
 #include "host/cli/job/warnings.hpp"
+#include "host/cli/warp/transform_run.hpp"
 #include "host/cli/warp/warp_job.hpp"
 #include "io/files/finished_file.hpp"
-#include "io/files/memory.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -39,24 +36,11 @@ const std::string order = "the order is: tetwarp warp IMAGE FIELD -o OUT";
 /// Throws std::invalid_argument for options that have no meaning without a mesh.
 void check_options(const WarpArguments& arguments) {
   for (const auto& [name, values] : arguments.given) {
-    if (has_meaning_for_transforms(name)) continue;
-    throw std::invalid_argument("--" + name + " is for warps by a mesh; leave it out");
-  }
-  if (arguments.resume && !arguments.provenance) {
-    throw std::invalid_argument("--resume of a warp by a transform needs --provenance; add it");
+    const std::string refusal = transform_refusal(name, values, arguments.provenance);
+    if (!refusal.empty()) throw std::invalid_argument(refusal);
   }
   if (arguments.files.size() != 2) {
     throw std::invalid_argument("a transform resamples one image at a time; " + order);
-  }
-  if (arguments.warp.backend == Backend::cuda || arguments.warp.backend == Backend::reference) {
-    throw std::invalid_argument("--backend: transforms run on cpu; leave it out");
-  }
-  if (extends(arguments.warp.outside)) {
-    throw std::invalid_argument(std::string("--outside ") + name_of(arguments.warp.outside) +
-                                " is for warps by a mesh; use background or identity");
-  }
-  if (arguments.grid.base == "bounds") {
-    throw std::invalid_argument("--grid bounds is for warps by a mesh; name a volume instead");
   }
 }
 
@@ -77,18 +61,9 @@ ResampleOptions resample_options(const WarpArguments& arguments) {
   return options;
 }
 
-/// The volume to resample.
-struct Source {
-  VolumeReadOptions read;
-  VolumeHeader header;
-  std::vector<ArrayHeader> arrays;
-  std::vector<std::int64_t> steps;
-  bool is_series = false;
-};
-
-Source open_source(const WarpArguments& arguments) {
+TransformSource open_source(const WarpArguments& arguments) {
   const std::string& path = arguments.files.front();
-  Source source;
+  TransformSource source;
   source.read.are_labels = arguments.warp.filter == Filter::labels;
   source.read.series = arguments.series;
   source.header = read_volume_header(path, source.read);
@@ -108,54 +83,14 @@ Source open_source(const WarpArguments& arguments) {
   return source;
 }
 
-/// Resamples the arrays of a step.
-void write_step(const WarpArguments& arguments,
-                const Source& source,
-                std::int64_t step,
-                const Transform& transform,
-                const ResampleOptions& options,
-                OutputWriter& writer,
-                ProgressBar& bar) {
-  const Grid& output = *options.output_grid;
-  for (std::size_t a = 0; a < source.arrays.size(); ++a) {
-    const Volume volume =
-        read_volume(arguments.files.front(), source.arrays[a].name, step, source.read);
-    stop_if_interrupted();
-    Volume result = make_volume(output, volume.type, volume.components, volume.name);
-    const VolumeView view(volume);
-    void* const data = result.data.data();
-    const auto share = static_cast<double>(source.arrays.size());
-    resample(std::span(&view, 1), transform, options, std::span(&data, 1), [&](double fraction) {
-      const double done = (static_cast<double>(a) + fraction) / share;
-      bar.update(done, done * static_cast<double>(output.voxel_count()));
-      return !is_interrupted();
-    });
-    writer.write(a, {{0, 0, 0}, output.dims}, data);
-  }
-  bar.finish_step();
-}
-
 /// What a job reads, all arguments checked.
-Source checked_source(const WarpArguments& arguments) {
+TransformSource checked_source(const WarpArguments& arguments) {
   check_options(arguments);
   const std::string& path = arguments.files.front();
   check_volume(path, order);
   check_series(arguments.series, {path});
   check_volume_name(arguments.output);
   return open_source(arguments);
-}
-
-/// Memory for one array of a step at a time [byte], with what the process holds now.
-double planned_memory(const Source& source, const ResampleOptions& options) {
-  const double spline = options.filter == Filter::bspline ? 16 : 0;  // bytes of a sample, at most
-  const auto from = static_cast<double>(source.header.grid.voxel_count());
-  const auto to = static_cast<double>(options.output_grid->voxel_count());
-  double most = 0;
-  for (const ArrayHeader& array : source.arrays) {
-    const auto bytes = static_cast<double>(size_of(array.type));
-    most = std::max(most, array.components * (from * (bytes + spline) + to * bytes));
-  }
-  return resident_memory() + most;
 }
 
 /// What the source loses.
@@ -170,58 +105,52 @@ Warnings notes_of(const std::string& path, const VolumeHeader& header) {
 
 /// Resamples all steps, or plans them with --dry-run.
 void resample_source(const WarpArguments& arguments,
-                     const Source& source,
-                     ResampleOptions options,
+                     const TransformSource& source,
+                     const ResampleOptions& options,
                      const JobContext& context,
                      JobResult& result) {
   const std::string& path = arguments.files.front();
   const Grid& grid = *options.output_grid;
-  const TransformFile file = read_transform(arguments.files.back(), arguments.transform_options());
-  if (file.ends_with_field && !is_given(arguments, "outside")) options.only_in_field = true;
-  const double memory = planned_memory(source, options);
-  const double available = resident_memory() + available_memory();
-  if (memory > available) {
-    result.refusal = fmt::format("{}: takes {} of memory, {} are available", path,
-                                 bytes_text(memory), bytes_text(available));
-  }
-  if (!result.refusal.empty() && !arguments.dry_run) throw std::runtime_error(result.refusal);
-  if (arguments.dry_run) {
-    for (const std::int64_t step : source.steps) {
-      result.plans.push_back({.volume = path, .step = step, .dims = grid.dims, .memory = memory});
-    }
-    return;
-  }
-  ProgressBar bar(context.shows_progress, context.label, source.steps.size());
-  OutputWriter writer(arguments.output, grid, source.arrays,
-                      {.compress = arguments.compress,
-                       .background = arguments.warp.background,
-                       .scalars = source.header.active},
-                      source.is_series, source.arrays.size(), ChunkShape::rows);
-  for (const std::int64_t step : source.steps) {
-    if (source.is_series) {
-      writer.begin_step(source.header.times[static_cast<std::size_t>(step)]);
-    }
-    write_step(arguments, source, step, file.transform, options, writer, bar);
-  }
-  writer.finish();
-  result.written = 1;
+  TransformRun run(arguments, source, options);
+  if (arguments.dry_run) return run.plan(result);
+  run.run(context, result);
   for (const std::string& note : notes_of(path, source.header)) {
     if (context.shows_progress) fmt::print(stderr, "tetwarp: {}\n", one_line(note));
     result.warnings.push_back(note);
   }
   result.steps = fmt::format(
       "{} x {} x {} voxels{} by {}", grid.dims[0], grid.dims[1], grid.dims[2],
-      source.is_series ? fmt::format(", {} steps", source.steps.size()) : "", file.convention);
+      source.is_series ? fmt::format(", {} steps", source.steps.size()) : "", run.convention());
 }
 }  // namespace
 
-bool has_meaning_for_transforms(const std::string& option) {
+std::string transform_refusal(const std::string& option,
+                              const std::vector<std::string>& values,
+                              bool has_provenance) {
   static const std::set<std::string> known{
       "output",     "array",    "source-step", "axes",       "fsl",     "grid",      "like",
       "dims",       "origin",   "spacing",     "direction",  "filter",  "overshoot", "outside",
       "background", "compress", "threads",     "quiet",      "backend", "series",    "like-series",
-      "label-rule", "report",   "dry-run",     "provenance", "resume"};
-  return known.contains(option);
+      "label-rule", "report",   "dry-run",     "provenance", "resume",  "memory"};
+  const std::string value = values.empty() ? "" : values.front();
+  const std::string for_meshes = "--" + option + " " + value + " is for warps by a mesh; ";
+  if (!known.contains(option)) return "--" + option + " is for warps by a mesh; leave it out";
+  if (option == "resume" && !has_provenance) {
+    return "--resume of a warp by a transform needs --provenance; add it";
+  }
+  if (option == "backend" && value != name_of(Backend::automatic) &&
+      value != name_of(Backend::cpu)) {
+    return "--backend: transforms run on cpu; leave it out";
+  }
+  if (option == "outside" && value != name_of(Outside::background) &&
+      value != name_of(Outside::identity)) {
+    return for_meshes + "use background or identity";
+  }
+  if (option == "grid" && value == "bounds") return for_meshes + "name a volume instead";
+  if (option == "label-rule" && value == name_of(LabelRule::volume)) {
+    return for_meshes + "use linear or gaussian";
+  }
+  return {};
 }
 
 bool names_transform(const WarpArguments& arguments) {
@@ -241,7 +170,7 @@ std::vector<std::string> transform_job_files(const WarpArguments& arguments) {
 JobResult run_transform_job(const WarpArguments& arguments, const JobContext& context) {
   const InterruptFlag interrupts_set_a_flag;
   const Stopwatch watch;
-  const Source source = checked_source(arguments);
+  const TransformSource source = checked_source(arguments);
   ResampleOptions options = resample_options(arguments);
   options.output_grid = resolve_grid(arguments.grid, source.header.grid, Mesh{}, {});
   const std::vector<std::string> files = files_of_output(arguments.output, source.arrays);

@@ -12,15 +12,18 @@ namespace tetwarp::cli {
 /// True when the last file is a transform.
 bool names_transform(const WarpArguments& arguments);
 
-/// False for options of warps by a mesh alone, which run_transform_job() refuses.
-/// @param option  its long name without dashes
-bool has_meaning_for_transforms(const std::string& option);
+/// Why run_transform_job() refuses an option with its values, with a remedy; empty: it does not.
+/// @param option          its long name without dashes
+/// @param has_provenance  --provenance is given, too
+std::string transform_refusal(const std::string& option,
+                              const std::vector<std::string>& values,
+                              bool has_provenance);
 
 /// The files that run_transform_job() writes. Throws IoError.
 std::vector<std::string> transform_job_files(const WarpArguments& arguments);
 
-/// Resamples a volume, all steps of a series, in memory. Options that need a mesh are refused.
-/// Throws std::invalid_argument, IoError, Cancelled.
+/// Resamples a volume, all steps of a series; with --memory in parts if need be. Options that need
+/// a mesh are refused. Throws std::invalid_argument, IoError, Cancelled.
 JobResult run_transform_job(const WarpArguments& arguments, const JobContext& context);
 
 /// The lines to print after a job that ran.

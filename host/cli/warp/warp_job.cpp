@@ -96,6 +96,56 @@ void with_mesh_named(const std::string& mesh, const Function& function) {
     throw IoError(mesh, "", problem + "; correct the positions, or check units and axes");
   }
 }
+
+/// Adds warnings to the result of the root, and prints them.
+void add_warnings(const Warnings& warnings,
+                  const JobContext& context,
+                  bool is_root,
+                  JobResult& result) {
+  if (!is_root) return;
+  if (context.shows_progress) {
+    print_warnings(warnings, context.label == "warp" ? "" : context.label);
+  }
+  result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+}
+
+/// What is known before anything is computed.
+JobResult planned_result(const WarpArguments& arguments, const JobPlan& plan) {
+  JobResult result;
+  result.outputs = plan.outputs();
+  result.steps = steps_text(arguments, plan);
+  result.report.version = TETWARP_VERSION;
+  result.report.backend = plan.backend;
+  result.report.backend_reason = plan.backend_reason;
+  return result;
+}
+
+/// Computes all volumes, or plans them with --dry-run.
+void run_volumes(const WarpArguments& arguments,
+                 const JobPlan& plan,
+                 const JobContext& context,
+                 Ranks& ranks,
+                 JobResult& result) {
+  ProgressBar bar(context.shows_progress && ranks.is_root(), context.label,
+                  progress_work(arguments, plan, ranks));
+  std::size_t task = 0;
+  for (const VolumePlan& volume : plan.volumes) {
+    with_mesh_named(arguments.mesh_file(), [&] {
+      if (!arguments.dry_run) {
+        run_volume(arguments, plan, volume, ranks, task, bar, result);
+      } else if (ranks.is_root()) {
+        plan_only(arguments, plan, volume, bar, result);
+        if (result.refusal.empty()) result.refusal = volume.refusal;
+      }
+    });
+    task += volume.outputs.size();
+  }
+}
+
+void write_job_report(const WarpArguments& arguments, const JobResult& result) {
+  if (arguments.report.empty()) return;
+  write_finished_file(arguments.report, report_json(result) + "\n");
+}
 }  // namespace
 
 JobResult run_warp_job(const WarpArguments& given, const JobContext& context) {
@@ -107,29 +157,15 @@ JobResult run_warp_job(const WarpArguments& given, const JobContext& context) {
   if (!ranks.is_root()) ranks.wait_for_all();
   const JobPlan plan = plan_job(given);
   WarpArguments arguments = given;
-  JobResult result;
-  const auto warn = [&](const Warnings& warnings) {
-    if (!ranks.is_root()) return;
-    if (context.shows_progress) {
-      print_warnings(warnings, context.label == "warp" ? "" : context.label);
-    }
-    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
-  };
   if (arguments.strict) refuse_warnings(plan.warnings);
-  warn(plan.warnings);
+  JobResult result = planned_result(arguments, plan);
+  add_warnings(plan.warnings, context, ranks.is_root(), result);
   if (context.shows_progress && ranks.is_root()) {
     for (const std::string& note : plan.notes) fmt::print(stderr, "tetwarp: {}\n", one_line(note));
   }
-  result.outputs = plan.outputs();
-  result.steps = steps_text(arguments, plan);
-  result.report.version = TETWARP_VERSION;
-  result.report.backend = plan.backend;
-  result.report.backend_reason = plan.backend_reason;
   if (ranks.count() == 1 && keeps_outputs(plan, arguments, result)) {
     result.report.timings.total = watch.seconds();
-    if (!arguments.report.empty()) {
-      write_finished_file(arguments.report, report_json(result) + "\n");
-    }
+    write_job_report(arguments, result);
     return result;
   }
   if (ranks.is_root()) {
@@ -138,36 +174,17 @@ JobResult run_warp_job(const WarpArguments& given, const JobContext& context) {
     }
     ranks.wait_for_all();
   }
-  {
-    ProgressBar bar(context.shows_progress && ranks.is_root(), context.label,
-                    progress_work(arguments, plan, ranks));
-    std::size_t task = 0;
-    for (const VolumePlan& volume : plan.volumes) {
-      with_mesh_named(arguments.mesh_file(), [&] {
-        if (!arguments.dry_run) {
-          run_volume(arguments, plan, volume, ranks, task, bar, result);
-        } else if (ranks.is_root()) {
-          plan_only(arguments, plan, volume, bar, result);
-          if (result.refusal.empty()) result.refusal = volume.refusal;
-        }
-      });
-      task += volume.outputs.size();
-    }
-  }
+  run_volumes(arguments, plan, context, ranks, result);
   gather_results(ranks, result);
-  warn(step_warnings(arguments.mesh_file(), std::ssize(plan.mesh.header().times),
-                     result.report.steps));
+  add_warnings(step_warnings(arguments.mesh_file(), std::ssize(plan.mesh.header().times),
+                             result.report.steps),
+               context, ranks.is_root(), result);
   result.report.timings.total = watch.seconds();
-  if (arguments.provenance && !arguments.dry_run && ranks.is_root()) {
-    std::vector<std::string> files;
-    for (const VolumePlan& volume : plan.volumes) {
-      files.insert(files.end(), volume.files.begin(), volume.files.end());
-    }
-    write_provenance(arguments, files, result);
+  if (!ranks.is_root()) return result;
+  if (arguments.provenance && !arguments.dry_run) {
+    write_provenance(arguments, plan.outputs(), result);
   }
-  if (!arguments.report.empty() && ranks.is_root()) {
-    write_finished_file(arguments.report, report_json(result) + "\n");
-  }
+  write_job_report(arguments, result);
   return result;
 }
 

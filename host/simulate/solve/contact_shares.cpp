@@ -9,6 +9,7 @@ void ContactShares::divide(const ContactIslands& islands,
                            bool iterates_two_levels,
                            bool skips_islands) {
   soft.clear(islands.count());
+  condensed.clear(islands.count());
   other.clear(islands.count());
   for (std::int32_t i = 0; i < islands.count(); ++i) {
     if (!islands.has_contacts(i) && skips_islands) continue;

@@ -27,8 +27,9 @@ struct ContactShare {
 };
 
 struct ContactShares {
-  ContactShare soft;   ///< of the two-level iteration
-  ContactShare other;  ///< of the contact solver
+  ContactShare soft;       ///< of the two-level iteration
+  ContactShare condensed;  ///< of what it takes, on the host, what CondensedSolver takes from it
+  ContactShare other;      ///< of the contact solver
 
   /// Contact islands of bodies that A couples go to the two-level iteration, all others to the
   /// contact solver.

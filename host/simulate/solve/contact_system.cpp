@@ -8,6 +8,7 @@
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
+#include "host/simulate/solve/condensed_solver.hpp"
 #include "host/simulate/solve/contact_shares.hpp"
 #include "host/simulate/solve/deformable_solver.hpp"
 #include "host/simulate/solve/general_solver.hpp"
@@ -27,7 +28,9 @@ struct ContactSystem::State {
         rows(surfaces, of, given.solver.threads),
         islands(surfaces, of),
         laws(surfaces, given.recovery_fraction),
-        deformable_solver(surfaces, of, given.solver, given.factors),
+        factors(given.factors ? given.factors : std::make_shared<RestFactors>(of)),
+        deformable_solver(surfaces, of, given.solver, factors),
+        condensed_solver(given.solver),
         general_solver(given.solver) {}
 
   void take_impulses(const ContactShare& share,
@@ -38,6 +41,13 @@ struct ContactSystem::State {
                   const std::vector<Point3>& change,
                   std::vector<Point3>& velocity,
                   ContactSolveOutcome& outcome);
+  void take_condensed(const CondensedSolver::Limits& limits, BodyStepper& stepper);
+  bool solve_condensed(BodyStepper& stepper,
+                       std::vector<Point3>& velocity,
+                       ContactSolveOutcome& outcome);
+  bool condense_all(BodyStepper& stepper,
+                    std::vector<Point3>& velocity,
+                    ContactSolveOutcome& outcome);
   void solve_other(BodyStepper& stepper,
                    std::vector<Point3>& velocity,
                    ContactSolveOutcome& outcome);
@@ -52,12 +62,15 @@ struct ContactSystem::State {
   ContactIslands islands;
   StepLaws laws;
   ContactShares shares;
+  std::shared_ptr<RestFactors> factors;
   DeformableSolver deformable_solver;
+  CondensedSolver condensed_solver;
   GeneralSolver general_solver;
   bool is_resident = false;  ///< all velocities that contacts have changed are on the device
   ContactSolution solution;
   std::vector<Point3> impulses;         ///< [block_count]
   std::vector<Point3> velocity_before;  ///< without contact, [block_count]
+  std::vector<Point3> condensed_velocity;
 };
 
 /// Whether the options leave the choice of the method.
@@ -93,6 +106,10 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                               rows, velocity);
   outcome.outer_iterations += solved.outer_iterations;
   outcome.sweeps += solved.sweeps;
+  if (!solved.converged && !solved.is_stopped && deformable_solver.resident() == nullptr &&
+      condense_all(stepper, velocity, outcome)) {
+    return;
+  }
   if (!solved.is_result && solved.is_stopped) {
     outcome.converged = false;
     return;
@@ -102,8 +119,46 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
     return shares.soft.clear(islands.count());
   }
   outcome.converged = solved.converged;
-  outcome.residual = solved.residual;
+  outcome.residual = std::max(outcome.residual, solved.residual);
   take_impulses(shares.soft, deformable_solver.impulse(), deformable_solver.contact_velocity());
+}
+
+/// Moves islands of the two-level iteration to a share of CondensedSolver.
+void ContactSystem::State::take_condensed(const CondensedSolver::Limits& limits,
+                                          BodyStepper& stepper) {
+  condensed_solver.take(limits, stepper.system().rows, islands, rows.rows(), laws.problem(),
+                        *factors, shares.soft, shares.condensed);
+}
+
+/// @returns whether its islands have converged; else they are given back, and nothing changes
+bool ContactSystem::State::solve_condensed(BodyStepper& stepper,
+                                           std::vector<Point3>& velocity,
+                                           ContactSolveOutcome& outcome) {
+  condensed_velocity = velocity;
+  const ContactReport* const report = condensed_solver.solve(
+      stepper.system(), rows.rows(), laws.problem(), shares.condensed, condensed_velocity);
+  if (report == nullptr || report->status != ContactStatus::converged) {
+    shares.soft.take(shares.condensed);
+    shares.condensed.clear(islands.count());
+    return false;
+  }
+  velocity = condensed_velocity;
+  outcome.residual = std::max(outcome.residual, report->residual.eta);
+  outcome.sweeps += report->sweeps;
+  take_impulses(shares.condensed, condensed_solver.impulse(), condensed_solver.contact_velocity());
+  return true;
+}
+
+/// Where the two-level iteration has failed: by CondensedSolver, if it takes all of its islands.
+bool ContactSystem::State::condense_all(BodyStepper& stepper,
+                                        std::vector<Point3>& velocity,
+                                        ContactSolveOutcome& outcome) {
+  if (!shares.condensed.is_empty()) return false;
+  take_condensed(CondensedSolver::later, stepper);
+  if (shares.soft.is_empty()) return solve_condensed(stepper, velocity, outcome);
+  shares.soft.take(shares.condensed);
+  shares.condensed.clear(islands.count());
+  return false;
 }
 
 void ContactSystem::State::solve_other(BodyStepper& stepper,
@@ -191,7 +246,8 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   s.rows.begin(state, contacts);
   s.islands.join(s.rows.sides());
   s.shares.divide(s.islands, s.iterates_two_levels(), s.options.skips_islands);
-  if (s.deformable_solver.begin(stepper, s.shares.soft)) {
+  const bool is_on_device = s.deformable_solver.begin(stepper, s.shares.soft);
+  if (is_on_device) {
     s.rows.set_for_host(s.shares.soft.contacts);
   } else {
     s.rows.set_all();
@@ -204,9 +260,14 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   outcome.islands = s.islands.contact_island_count();
   const std::vector<Point3>& last_change =
       change != nullptr && change->size() == velocity.size() ? *change : none;
+  if (!is_on_device && !s.shares.soft.is_empty()) {
+    s.take_condensed(CondensedSolver::at_first, stepper);
+    if (!s.shares.condensed.is_empty()) s.solve_condensed(stepper, velocity, outcome);
+  }
   s.solve_soft(stepper, state, last_change, velocity, outcome);
   s.solve_other(stepper, velocity, outcome);
-  s.is_resident = (s.shares.soft.is_empty() || s.deformable_solver.resident() != nullptr) &&
+  s.is_resident = s.shares.condensed.is_empty() &&
+                  (s.shares.soft.is_empty() || s.deformable_solver.resident() != nullptr) &&
                   (s.shares.other.is_empty() || s.general_solver.resident() != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   s.laws.keep_impulses(contacts, s.solution.impulse);

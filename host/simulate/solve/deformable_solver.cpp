@@ -17,20 +17,27 @@ namespace {
 constexpr std::int64_t most_nodes = 1000;
 constexpr std::int64_t most_numbers = std::int64_t{1} << 27;
 
-/// [coupling islands] elastic body that gives way by its inverse, or -1.
-std::vector<std::int32_t> bodies_with_inverses(const Model& model, const RestFactors& factors) {
-  std::vector<std::int32_t> body_of(index_of(model.island_count), -1);
+/// [bodies] Whether each has a factor too large for an inverse.
+std::vector<std::uint8_t> find_large(const Model& model, const RestFactors& factors) {
+  std::vector<std::uint8_t> is_large(model.body_island.size(), 0);
   std::int64_t numbers = 0;
-  for (std::int32_t island = 0; island < model.island_count; ++island) {
-    const std::int32_t body = factors.body_of_island(island);
-    if (body < 0) continue;
-    const std::int64_t nodes =
-        model.body_node[index_of(body) + 1] - model.body_node[index_of(body)];
-    if (nodes > most_nodes || numbers + 9 * nodes * nodes > most_numbers) continue;
-    numbers += 9 * nodes * nodes;
-    body_of[index_of(island)] = body;
+  for (std::size_t body = 0; body < is_large.size(); ++body) {
+    if (!factors.has(static_cast<std::int32_t>(body))) continue;
+    const std::int64_t nodes = model.body_node[body + 1] - model.body_node[body];
+    is_large[body] = nodes > most_nodes || numbers + 9 * nodes * nodes > most_numbers ? 1 : 0;
+    if (is_large[body] == 0) numbers += 9 * nodes * nodes;
   }
-  return body_of;
+  return is_large;
+}
+
+/// [coupling islands] Whether an island has such a body.
+std::vector<std::uint8_t> islands_with_large(const Model& model, const RestFactors& factors) {
+  const std::vector<std::uint8_t> is_large = find_large(model, factors);
+  std::vector<std::uint8_t> has_large(index_of(model.island_count), 0);
+  for (std::size_t body = 0; body < is_large.size(); ++body) {
+    if (is_large[body] != 0) has_large[index_of(model.body_island[body])] = 1;
+  }
+  return has_large;
 }
 
 }  // namespace
@@ -42,15 +49,14 @@ DeformableSolver::DeformableSolver(const SceneSurfaces& scene,
     : scene_(scene),
       options_(options),
       factors_(factors ? std::move(factors) : std::make_shared<RestFactors>(model)),
+      has_large_(islands_with_large(model, *factors_)),
       on_host_(model, options, factors_),
-      on_device_(bodies_with_inverses(model, *factors_),
-                 CoupledControl::omega(options.expert.relaxation)) {}
+      on_device_(factors_->bodies_of_blocks(), CoupledControl::omega(options.expert.relaxation)) {}
 
-/// Whether all elastic bodies among islands that have factors on the host have inverses.
+/// Whether all elastic bodies of islands have inverses.
 bool DeformableSolver::has_inverses(const std::vector<std::uint8_t>& takes) const {
   for (std::size_t i = 0; i < takes.size(); ++i) {
-    const std::int32_t body = factors_->body_of_island(static_cast<std::int32_t>(i));
-    if (takes[i] != 0 && body >= 0 && !on_device_.has_inverse(i)) return false;
+    if (takes[i] != 0 && has_large_[i] != 0) return false;
   }
   return true;
 }

@@ -50,7 +50,8 @@ class DeformableSolver {
   const SceneSurfaces& scene_;
   ContactOptions options_;
   std::shared_ptr<RestFactors> factors_;
-  ContactProblem laws_;  ///< of the contacts that are taken
+  ContactProblem laws_;                  ///< of the contacts that are taken
+  std::vector<std::uint8_t> has_large_;  ///< [coupling islands] a body that has no inverse
   TwoLevelSolver on_host_;
   CompliantListMaker on_device_;  ///< of the bodies as a device takes them
   TwoLevelStart start_;           ///< of a device

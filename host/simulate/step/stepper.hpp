@@ -17,6 +17,7 @@
 namespace tetwarp {
 
 class DeviceStepper;
+class IslandFactors;
 class RestFactors;
 class StepClock;
 
@@ -69,6 +70,8 @@ struct StepSystem {
   View<const double> values;    ///< [places][9]
   View<const double> load;      ///< b, [rows][3]
   View<const double> velocity;  ///< v without contact, [rows][3]
+  /// [coupling islands] those that the linear solve has made, or null: none.
+  std::vector<IslandFactors>* factors = nullptr;
 };
 
 class BodyStepper {

@@ -179,26 +179,23 @@ class RowLinks {
       lower[axis] = static_cast<std::int64_t>(index.lower[axis][lane]);
       // A neighbor of weight zero is not read: it may not exist, or not be a number.
       step[axis] = index.fraction[axis][lane] > 0 ? stride : 0;
-      stride *= field.dims[axis];
+      stride *= field.size[axis];
     }
     const float* const v = field.at(lower[0], lower[1], lower[2]);
     const std::int64_t farthest = (v - field.vectors) + step[0] + step[1] + step[2];
+    const bool is_last = farthest + 4 > stride;  // four numbers would end beyond the last vector
     alignas(16) float vector[4];
-    if (farthest + 4 > stride) {  // a load of four numbers would end beyond the last vector
-      const double at[3] = {index.lower[0][lane] + index.fraction[0][lane],
-                            index.lower[1][lane] + index.fraction[1][lane],
-                            index.lower[2][lane] + index.fraction[2][lane]};
-      double sum[3];
-      field.sample(at, sum);
-      for (int axis = 0; axis < 3; ++axis) x.at[axis][lane] += sum[axis];
-      return;
-    }
     const auto fx = hn::Set(d, static_cast<float>(index.fraction[0][lane]));
     const auto fy = hn::Set(d, static_cast<float>(index.fraction[1][lane]));
     const auto fz = hn::Set(d, static_cast<float>(index.fraction[2][lane]));
     const auto lerp = [](auto f, auto a, auto b) { return hn::Add(a, hn::Mul(f, hn::Sub(b, a))); };
+    const auto load = [&](const float* from) {
+      if (!is_last) return hn::LoadU(d, from);
+      alignas(16) const float numbers[4] = {from[0], from[1], from[2], 0};
+      return hn::Load(d, numbers);
+    };
     const auto along_x = [&](const float* from) {
-      return lerp(fx, hn::LoadU(d, from), hn::LoadU(d, from + step[0]));
+      return lerp(fx, load(from), load(from + step[0]));
     };
     const auto near = lerp(fy, along_x(v), along_x(v + step[1]));
     const auto next = lerp(fy, along_x(v + step[2]), along_x(v + step[2] + step[1]));

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "host/base/pixel_dispatch.hpp"
+#include "host/warp/cpu/row_field-inl.hpp"
 #include "host/warp/cpu/row_links-inl.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
 #include "host/warp/cpu/row_taps-inl.hpp"
@@ -30,6 +31,7 @@ class RowResampler {
   explicit RowResampler(const RowResampleOp<T>& op)
       : op_(op),
         links_(op.map),
+        field_(op.map, op.dims[0]),
         shape_(op.job.source),
         is_nearest_(op.job.filter == Filter::nearest) {
     const SourceView<T>& source = op.job.source;
@@ -44,12 +46,14 @@ class RowResampler {
 
   /// Whether the job is one for vectors.
   bool is_vectored() const {
-    return shape_.is_vectored && shape_.components == 1 && !is_wide(op_.job.filter) &&
-           op_.dims[0] >= cell_edge;
+    return op_.may_use_vectors && shape_.is_vectored && shape_.components == 1 &&
+           !is_wide(op_.job.filter) && op_.dims[0] >= cell_edge;
   }
 
   void run(std::int64_t row) {
-    const std::int64_t j = row % op_.dims[1], k = row / op_.dims[1], nx = op_.dims[0];
+    const std::int64_t j = op_.begin[0] + row % op_.dims[1], k = op_.begin[1] + row / op_.dims[1],
+                       nx = op_.dims[0];
+    if (field_.is_used()) field_.set_row(j, k);
     for (std::int64_t i = 0; i < nx; i += cell_edge) {
       // The last eight voxels may repeat some of those before them.
       add(std::min(i, nx - cell_edge), j, k, row);
@@ -65,23 +69,26 @@ class RowResampler {
 
   void add(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t row) {
     const auto at = static_cast<std::size_t>(cell_edge * taps_.count);
-    const unsigned inside =
-        op_.map.links.size > 0 ? add_linked(i, j, k, at) : add_direct(i, j, k, at);
+    unsigned inside = 0;
+    if (field_.is_used()) {
+      inside = add_direct(i, j, k, field_.vectors(i), at) & field_.inside(i);
+    } else if (op_.map.links.size > 0) {
+      inside = add_linked(i, j, k, at);
+    } else {
+      inside = add_direct(i, j, k, op_.map.has_field() ? op_.map.field.at(i, j, k) : nullptr, at);
+    }
     first_[taps_.count] = row * op_.dims[0] + i;
     fetch_ahead(at);
-    if (reads_past_end(at)) {
-      for (int lane = 0; lane < cell_edge; ++lane) {
-        op_.store(i + lane, j, k, first_[taps_.count] + lane);
-      }
-      return;
-    }
+    if (reads_past_end(at)) return store_each(at, inside, first_[taps_.count]);
     taps_.unit[taps_.count++] = {0, 0xff, static_cast<std::uint8_t>(inside)};
     if (taps_.count == RowTaps<true>::row_units) flush();
   }
 
-  /// Stores the taps of eight voxels by an affine map and the vectors of a field on the output's
-  /// grid. @returns the voxels within the source, as bits
-  unsigned add_direct(std::int64_t i, std::int64_t j, std::int64_t k, std::size_t at) {
+  /// Stores the taps of eight voxels by an affine map and their displacements.
+  /// @param field  three numbers for each voxel; null: none
+  /// @returns the voxels within the source, as bits
+  unsigned add_direct(
+      std::int64_t i, std::int64_t j, std::int64_t k, const float* field, std::size_t at) {
     const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
                              static_cast<double>(k)};
     double start[3];
@@ -91,10 +98,9 @@ class RowResampler {
     for (int axis = 0; axis < 3; ++axis) {
       const double lower = whole_voxel(start[axis]);
       base[axis] = static_cast<float>(start[axis] - lower);
-      whole[axis] = static_cast<int>(lower);
+      whole[axis] = static_cast<int>(lower) - op_.job.source.origin[axis];
     }
-    const bool has_field = op_.map.has_field();
-    const float* const field = has_field ? op_.map.field.at(i, j, k) : nullptr;
+    const bool has_field = field != nullptr;
     unsigned inside = 0;
     const RowTag d;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
@@ -152,7 +158,8 @@ class RowResampler {
       RowPositions<true> x;
       for (int axis = 0; axis < 3; ++axis) {
         x.local[axis] = hn::Load(d, local[axis] + lane);
-        x.whole[axis] = hn::Load(RowIntTag(), whole[axis] + lane);
+        x.whole[axis] = hn::Sub(hn::Load(RowIntTag(), whole[axis] + lane),
+                                hn::Set(RowIntTag(), op_.job.source.origin[axis]));
       }
       inside |= bits_of(store_taps<true>(shape_, is_nearest_, x, at + lane, taps_), lane);
     }
@@ -173,6 +180,27 @@ class RowResampler {
     const std::int32_t* const last = taps_.offset[3] + at;
     const std::int64_t farthest = *std::max_element(last, last + cell_edge);
     return farthest + static_cast<std::int64_t>(8 / sizeof(T)) > voxels_;
+  }
+
+  /// Stores eight voxels sample by sample: the bits of sample_units().
+  /// @param at      place of their taps
+  /// @param inside  those within the source, as bits
+  void store_each(std::size_t at, unsigned inside, std::int64_t voxel) const {
+    for (std::size_t lane = at; lane < at + cell_edge; ++lane, inside >>= 1, ++voxel) {
+      T& out = op_.job.volume[voxel];
+      if ((inside & 1) == 0) {
+        out = op_.job.background;
+        continue;
+      }
+      const std::int32_t lower = taps_.offset[0][lane];
+      Tap<float> tap{
+          true,
+          {{lower, lower}, {0, taps_.offset[1][lane] - lower}, {0, taps_.offset[2][lane] - lower}},
+          {}};
+      for (int axis = 0; axis < 3; ++axis) tap.fraction[axis] = taps_.fraction[axis][lane];
+      if (tap.fraction[0] > 0) ++tap.offset[0][1];
+      out = sample(op_.job.source, op_.job.filter, tap, 0);
+    }
   }
 
   void flush() {
@@ -198,6 +226,7 @@ class RowResampler {
 
   const RowResampleOp<T>& op_;
   RowLinks links_;
+  RowField field_;
   SourceShape shape_;
   bool is_nearest_;
   std::int64_t voxels_;

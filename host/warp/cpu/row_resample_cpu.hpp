@@ -13,8 +13,9 @@ namespace tetwarp {
 std::int64_t resample_lines(const std::int64_t* dims);
 
 /// Resamples lines [begin, end) of the output: one component of float32 arithmetic by nearest or
-/// linear in vectors, all others row by row. By an affine map and a field on the output's grid,
-/// positions are relative to those of the first of eight voxels in float32. By links they are those
+/// linear in vectors, all others row by row. By an affine map and a field whose grid is the
+/// output's or parallel to it, positions are relative to those of the first of eight voxels in
+/// float32. By other links they are those
 /// of TransformLink in float64, but vectors of fields are interpolated in float32: within 2^-21 of
 /// the largest one around.
 /// @param type  T of the job

@@ -9,14 +9,18 @@
 #include <string>
 
 #include "host/base/index_space.hpp"
+#include "host/base/region_grid.hpp"
 
 namespace tetwarp {
 namespace {
-/// Checks the numbers that a grid needs.
+/// Checks the numbers that a region of a grid needs.
 template <class Number>
-void check_vectors(const Grid& grid, const std::vector<Number>& vectors, const std::string& what) {
+void check_vectors(const Grid& grid,
+                   const Region& region,
+                   const std::vector<Number>& vectors,
+                   const std::string& what) {
   check_grid(grid, what);
-  if (std::ssize(vectors) != 3 * grid.voxel_count()) {
+  if (std::ssize(vectors) != 3 * checked_region(grid, region).voxel_count()) {
     throw std::invalid_argument(what + ": expected three numbers for every voxel");
   }
 }
@@ -32,6 +36,8 @@ bool is_identity(const IndexAffine& map) {
 }
 
 struct LinkMaker {
+  const FieldWindow* window;  ///< of a field; null: it holds the displacements
+
   TransformLink operator()(const AffineTransform& affine) const {
     const auto is_finite = [](double x) { return std::isfinite(x); };
     if (!std::ranges::all_of(affine.matrix, is_finite) ||
@@ -43,15 +49,19 @@ struct LinkMaker {
     return link;
   }
   TransformLink operator()(const DisplacementField& field) const {
-    check_vectors(field.grid, field.displacement, "displacement field");
+    const Region region = window != nullptr ? window->region : Region{{0, 0, 0}, field.grid.dims};
+    const std::vector<float>& held = window != nullptr ? window->displacement : field.displacement;
+    check_vectors(field.grid, region, held, "displacement field");
     TransformLink link{};
     link.to_index = index_from_world(field.grid);
-    link.field.vectors = field.displacement.data();
+    link.field.vectors = held.data();
     std::ranges::copy(field.grid.dims, link.field.dims);
+    std::ranges::copy(grid_of_region(field.grid, region).dims, link.field.size);
+    link.field.first = link.field.place(region.begin[0], region.begin[1], region.begin[2]);
     return link;
   }
   TransformLink operator()(const BSplineTransform& spline) const {
-    check_vectors(spline.grid, spline.coefficients, "spline");
+    check_vectors(spline.grid, {{0, 0, 0}, spline.grid.dims}, spline.coefficients, "spline");
     if (std::ranges::min(spline.grid.dims) < 4) {
       throw std::invalid_argument(
           "spline: a cubic one has at least 4 coefficients along each axis");
@@ -65,17 +75,25 @@ struct LinkMaker {
 };
 }  // namespace
 
-std::vector<TransformLink> links_of(const Transform& transform) {
+std::vector<TransformLink> links_of(const Transform& transform,
+                                    std::span<const FieldWindow> windows) {
   std::vector<TransformLink> links;
+  const auto add = [&](const auto& single) {
+    const std::size_t n = links.size();
+    if (!windows.empty() && n >= windows.size()) {
+      throw std::invalid_argument("transform: expected a window of every link");
+    }
+    links.push_back(LinkMaker{windows.empty() ? nullptr : &windows[n]}(single));
+  };
   if (const auto* const chain = std::get_if<TransformChain>(&transform)) {
     if (chain->links.empty()) throw std::invalid_argument("transform: a chain without links");
-    for (const SingleTransform& link : chain->links) links.push_back(std::visit(LinkMaker{}, link));
+    for (const SingleTransform& link : chain->links) std::visit(add, link);
   } else if (const auto* const affine = std::get_if<AffineTransform>(&transform)) {
-    links.push_back(LinkMaker{}(*affine));
+    add(*affine);
   } else if (const auto* const field = std::get_if<DisplacementField>(&transform)) {
-    links.push_back(LinkMaker{}(*field));
+    add(*field);
   } else {
-    links.push_back(LinkMaker{}(std::get<BSplineTransform>(transform)));
+    add(std::get<BSplineTransform>(transform));
   }
   return links;
 }
@@ -127,6 +145,40 @@ IndexAffine affine_map(const AffineTransform& affine) {
     map.offset[row] = affine.offset[row];
   }
   return map;
+}
+
+IndexAffine world_map(const Grid& grid) {
+  IndexAffine map;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      map.linear[row][axis] = grid.direction[3 * row + axis] * grid.spacing[axis];
+    }
+    map.offset[row] = grid.origin[row];
+  }
+  return map;
+}
+
+IndexAffine index_map(const Grid& grid) {
+  const IndexFromWorld from_world = index_from_world(grid);
+  IndexAffine map;
+  for (int row = 0; row < 3; ++row) {
+    map.offset[row] = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      map.linear[row][axis] = from_world.linear[row][axis];
+      map.offset[row] -= from_world.linear[row][axis] * from_world.origin[axis];
+    }
+  }
+  return map;
+}
+
+IndexAffine between_grids(const Grid& other, const Grid& output) {
+  const IndexMap map = source_from_output(other, output);
+  IndexAffine affine;
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::copy_n(map.linear.begin() + static_cast<std::ptrdiff_t>(3 * row), 3, affine.linear[row]);
+    affine.offset[row] = map.offset[row];
+  }
+  return affine;
 }
 
 }  // namespace tetwarp

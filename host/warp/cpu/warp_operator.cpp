@@ -21,66 +21,35 @@
 
 namespace tetwarp {
 namespace {
-/// Adds to `sums` the weighted samples of a position, per component.
-void add_samples(const OperatorTaps& taps, const double* samples, int components, double* sums) {
+/// Voxels [begin, end) of the source, whole layers.
+struct VoxelRange {
+  std::int64_t begin = 0;
+  std::int64_t end = std::numeric_limits<std::int64_t>::max();
+
+  bool contains(std::int64_t voxel) const { return voxel >= begin && voxel < end; }
+};
+
+/// Calls visit(voxel, weight) for what a voxel of the output reads within a range.
+template <class Visit>
+void for_samples(const OperatorTaps& taps, const VoxelRange& range, const Visit& visit) {
   for (int z = 0; z < taps.count[2]; ++z) {
+    if (!range.contains(taps.offset[2][z])) continue;
     for (int y = 0; y < taps.count[1]; ++y) {
       const std::int64_t line = taps.offset[2][z] + taps.offset[1][y];
       const double across = taps.weight[2][z] * taps.weight[1][y];
       for (int x = 0; x < taps.count[0]; ++x) {
-        const double weight = across * taps.weight[0][x];
-        const double* const at = samples + (line + taps.offset[0][x]) * components;
-        for (int c = 0; c < components; ++c) sums[c] += weight * at[c];
+        visit(line + taps.offset[0][x], across * taps.weight[0][x]);
       }
     }
   }
 }
 
-void add_samples(std::span<const OverlapShare> shares,
-                 const double* samples,
-                 int components,
-                 double* sums) {
+template <class Visit>
+void for_samples(std::span<const OverlapShare> shares,
+                 const VoxelRange& range,
+                 const Visit& visit) {
   for (const OverlapShare& share : shares) {
-    const double* const at = samples + share.voxel * components;
-    for (int c = 0; c < components; ++c) sums[c] += share.weight * at[c];
-  }
-}
-
-/// Adds the values of a voxel to the samples that it reads in layers [begin, end) of the source,
-/// with the weights of add_samples(). @param slice  voxels of a layer
-void spread_values(const OperatorTaps& taps,
-                   const double* values,
-                   int components,
-                   std::int64_t begin,
-                   std::int64_t end,
-                   std::int64_t slice,
-                   double* samples) {
-  for (int z = 0; z < taps.count[2]; ++z) {
-    const std::int64_t layer = taps.offset[2][z];
-    if (layer < begin * slice || layer >= end * slice) continue;
-    for (int y = 0; y < taps.count[1]; ++y) {
-      const std::int64_t line = layer + taps.offset[1][y];
-      const double across = taps.weight[2][z] * taps.weight[1][y];
-      for (int x = 0; x < taps.count[0]; ++x) {
-        const double weight = across * taps.weight[0][x];
-        double* const at = samples + (line + taps.offset[0][x]) * components;
-        for (int c = 0; c < components; ++c) at[c] += weight * values[c];
-      }
-    }
-  }
-}
-
-void spread_values(std::span<const OverlapShare> shares,
-                   const double* values,
-                   int components,
-                   std::int64_t begin,
-                   std::int64_t end,
-                   std::int64_t slice,
-                   double* samples) {
-  for (const OverlapShare& share : shares) {
-    if (share.voxel < begin * slice || share.voxel >= end * slice) continue;
-    double* const at = samples + share.voxel * components;
-    for (int c = 0; c < components; ++c) at[c] += share.weight * values[c];
+    if (range.contains(share.voxel)) visit(share.voxel, share.weight);
   }
 }
 
@@ -283,7 +252,11 @@ void WarpOperator::forward(std::span<const double> x, std::span<double> y) const
   parallel_for(state_->threads, state_->row_count(), [&](std::int64_t row) {
     std::fill_n(y.data() + row * row_size, row_size, 0.0);
     state_->for_weights(row, [&](std::int64_t voxel, const auto& weights) {
-      add_samples(weights, samples, components, y.data() + voxel * components);
+      double* const sums = y.data() + voxel * components;
+      for_samples(weights, {}, [&](std::int64_t read, double weight) {
+        const double* const at = samples + read * components;
+        for (int c = 0; c < components; ++c) sums[c] += weight * at[c];
+      });
     });
   });
 }
@@ -299,8 +272,11 @@ void WarpOperator::adjoint(std::span<const double> y, std::span<double> x) const
       const State::LayerRange& range = state_->layers[static_cast<std::size_t>(row)];
       if (range.last < begin || range.first >= end) continue;
       state_->for_weights(row, [&](std::int64_t voxel, const auto& weights) {
-        spread_values(weights, y.data() + voxel * components, components, begin, end, slice,
-                      x.data());
+        const double* const values = y.data() + voxel * components;
+        for_samples(weights, {begin * slice, end * slice}, [&](std::int64_t read, double weight) {
+          double* const at = x.data() + read * components;
+          for (int c = 0; c < components; ++c) at[c] += weight * values[c];
+        });
       });
     }
   });

@@ -235,7 +235,9 @@ TEST(CompliantListMaker, KeepsListsWhileTheSameIslandsAreTaken) {
   stepper->solve(input_for(model, dt, {0, 0, 0}));
   const SystemRows rows = stepper->system().rows;
   const ContactIslands islands({}, model);
-  CompliantListMaker maker({0, -1}, 0.5), other({0, -1}, 0.5);
+  std::vector<std::int32_t> body_of(10, 0);
+  body_of[8] = body_of[9] = -1;
+  CompliantListMaker maker(body_of, 0.5), other(body_of, 0.5);
 
   maker.make(rows, islands, {1, 1});
   const CompliantLists both = maker.lists();

@@ -113,6 +113,65 @@ TEST(TwoLevelContact, SheetsWithoutFrictionAreSolvedByNewtonsMethod) {
   }
 }
 
+/// Where a factorization takes longer than a few outer iterations, Newton's method follows these.
+TEST(TwoLevelContact, WideSheetsFollowByNewtonsMethod) {
+  for (const double adhesion : {0.0, 4e7}) {
+    SCOPED_TRACE(adhesion);
+    const HandScene scene = sheet_scene(1e7, 24);
+    ContactSystemOptions options;
+    options.recovery_fraction = 1e9;
+    options.solver.tolerance = 1e-6;
+
+    for (const StackStep& step : run_stack(scene, options, adhesion, nullptr, 0)) {
+      EXPECT_TRUE(step.outcome.converged);
+      EXPECT_LE(step.residual.eta, 1.5e-6);
+      EXPECT_LE(step.outcome.outer_iterations, 400);
+    }
+  }
+}
+
+/// Of bodies that springs join the blocks of M are far from A: with these alone iterations that
+/// have converged were off by all of their impulses. Few contacts are solved with W = J A^-1 J^T.
+TEST(TwoLevelContact, TiedBodiesMeetTheTolerance) {
+  for (const double youngs : {1e4, 1e6, 1e8}) {
+    for (const double spring : {1e2, 1e4}) {
+      for (const double adhesion : {0.0, 4e7}) {
+        SCOPED_TRACE(testing::Message() << youngs << " " << spring << " " << adhesion);
+        const HandScene scene = tied_scene(youngs, spring);
+        ContactSystemOptions options;
+        options.recovery_fraction = 1e9;
+        options.solver.tolerance = 1e-5;
+
+        for (const StackStep& step : run_stack(scene, options, adhesion, nullptr)) {
+          EXPECT_TRUE(step.outcome.converged);
+          EXPECT_LE(step.residual.eta, 1.5e-5);
+          EXPECT_EQ(step.outcome.outer_iterations, 0);
+        }
+      }
+    }
+  }
+}
+
+/// What the iteration calls converged is so by a factorization of A, with friction, however stiff
+/// the sheet is.
+TEST(TwoLevelContact, SheetsWithFrictionAreNotCalledConvergedTooEarly) {
+  for (const double stiffness : {1e3, 1e5}) {
+    SCOPED_TRACE(stiffness);
+    const HandScene scene = sheet_scene(stiffness, 12);  // with too many contacts for W
+    ContactSystemOptions options;
+    options.recovery_fraction = 1e9;
+    options.solver.tolerance = 1e-4;
+
+    std::int64_t converged = 0;
+    for (const StackStep& step : run_stack(scene, options, 0, nullptr)) {
+      if (!step.outcome.converged) continue;
+      ++converged;
+      EXPECT_LE(step.residual.eta, 1.5e-4);
+    }
+    EXPECT_GT(converged, 0);
+  }
+}
+
 /// Sweeps over groups keep the velocities of all touched nodes consistent with the impulses.
 TEST(TwoLevelContact, GroupsOfSeveralBodiesMeetTheTolerance) {
   const HandScene scene = tower_scene();

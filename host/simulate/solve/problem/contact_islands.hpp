@@ -22,6 +22,8 @@ class ContactIslands {
   std::int32_t of_block(std::int32_t block) const {
     return island_of_[static_cast<std::size_t>(block)];
   }
+  /// The lowest coupling island of its contact island.
+  std::int32_t root(std::int32_t island) const { return root_[static_cast<std::size_t>(island)]; }
   bool has_contacts(std::int32_t island) const {
     return has_contacts_[static_cast<std::size_t>(island)] != 0;
   }

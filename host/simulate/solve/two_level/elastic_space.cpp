@@ -17,19 +17,21 @@ constexpr std::size_t most_touched = 400;  // nodes of a body
 
 ElasticSpace::ElasticSpace(std::shared_ptr<RestFactors> factors) : factors_(std::move(factors)) {}
 
-void ElasticSpace::find_bare(const SoftProblem& problem, std::vector<std::uint8_t>& bare) {
-  std::vector<std::size_t> touched(index_of(problem.islands.count()), 0);
-  std::vector<std::uint8_t> is_counted;
+void ElasticSpace::find_bare(const SoftProblem& problem,
+                             const std::vector<std::int32_t>& body_of,
+                             std::vector<std::uint8_t>& bare) {
+  std::vector<std::size_t> touched(bare.size(), 0);
+  std::vector<std::uint8_t> is_counted(body_of.size(), 0);
   for (const std::int32_t contact : problem.contacts) {
     for (const std::int32_t block : problem.rows.blocks_of(index_of(contact))) {
-      const std::int32_t island = problem.islands.of_block(block);
-      if (index_of(block) >= is_counted.size()) is_counted.resize(index_of(block) + 1, 0);
-      if (island < 0 || is_counted[index_of(block)] != 0) continue;
+      const std::int32_t body = body_of[index_of(block)];
+      if (body < 0 || problem.islands.of_block(block) < 0 || is_counted[index_of(block)] != 0) {
+        continue;
+      }
       is_counted[index_of(block)] = 1;
-      ++touched[index_of(island)];
+      ++touched[index_of(body)];
     }
   }
-  bare.resize(touched.size());
   std::ranges::transform(touched, bare.begin(), [](std::size_t count) -> std::uint8_t {
     return count > most_touched ? 1 : 0;
   });

@@ -37,8 +37,11 @@ class ElasticSpace {
   explicit ElasticSpace(std::shared_ptr<RestFactors> factors);
 
   /// Finds bodies with so many touched nodes that they give way by their diagonal blocks instead.
-  /// @param bare  out, [coupling islands]; 1: such a body
-  static void find_bare(const SoftProblem& problem, std::vector<std::uint8_t>& bare);
+  /// @param body_of  [blocks] elastic bodies, or -1
+  /// @param bare     in and out, [bodies of the model]; 1: such a body
+  static void find_bare(const SoftProblem& problem,
+                        const std::vector<std::int32_t>& body_of,
+                        std::vector<std::uint8_t>& bare);
 
   /// Sets the bodies that have a frame, and which of their nodes contacts touch.
   /// @param lists  kept by the caller

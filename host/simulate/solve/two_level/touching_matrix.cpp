@@ -9,14 +9,14 @@
 namespace tetwarp {
 namespace {
 
-constexpr std::int64_t most_rows = 1024;
-constexpr std::int64_t most_operations = 4'000'000;  // of a factorization, about a millisecond
+constexpr std::int64_t most_rows = 4096;  // of the search for an order of little fill
 
 }  // namespace
 
 bool TouchingMatrix::set(const StepSystem& system,
                          const CompliantLists& lists,
-                         const TouchingBlocks& blocks) {
+                         const TouchingBlocks& blocks,
+                         std::int64_t most_operations) {
   lists_ = &lists;
   blocks_ = &blocks;
   if (lists.row_count() > most_rows) return false;

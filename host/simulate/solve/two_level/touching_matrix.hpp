@@ -13,10 +13,15 @@ namespace tetwarp {
 class TouchingMatrix {
  public:
   /// Sets the pattern: that of A, and the rows that a contact moves with each other.
-  /// @param lists, blocks  kept by the caller
-  /// @returns whether a factorization takes about as long as tens of sweeps and products; if not,
-  ///          there is no matrix
-  bool set(const StepSystem& system, const CompliantLists& lists, const TouchingBlocks& blocks);
+  /// @param lists, blocks    kept by the caller
+  /// @param most_operations  of a factorization, multiplications
+  /// @returns whether it has at most so many; if not, there is no matrix
+  bool set(const StepSystem& system,
+           const CompliantLists& lists,
+           const TouchingBlocks& blocks,
+           std::int64_t most_operations);
+  /// Multiplications of a factorization.
+  std::int64_t operations() const { return lu_.operations(); }
   /// Factorizes. @param slope  H, [contacts][9], row by row
   /// @returns whether the matrix is regular
   bool factor(const StepSystem& system, const std::vector<double>& slope);

@@ -16,13 +16,15 @@ constexpr double first_softness = 1e-2, least_softness = 1e-8, most_softness = 1
 
 }  // namespace
 
-bool TouchingNewton::set(const StepSystem& system, const CompliantLists& lists) {
+bool TouchingNewton::set(const StepSystem& system,
+                         const CompliantLists& lists,
+                         std::int64_t most_operations) {
   for (std::size_t c = 0; c < index_of(blocks_.count()); ++c) {
     if (blocks_.law(c).friction > 0) return false;
   }
   softness_ = first_softness;
   errors_.clear();
-  return matrix_.set(system, lists, blocks_);
+  return matrix_.set(system, lists, blocks_, most_operations);
 }
 
 void TouchingNewton::linearize(const std::vector<double>& impulse,

@@ -22,9 +22,11 @@ class TouchingNewton {
   TouchingNewton(const TouchingBlocks& blocks, ContactSwitches switches)
       : blocks_(blocks), switches_(switches) {}
 
-  /// Call after TouchingBlocks::set().
-  /// @returns whether there is no friction and TouchingMatrix::set() finds factors quick
-  bool set(const StepSystem& system, const CompliantLists& lists);
+  /// Call after TouchingBlocks::set(). @param most_operations  of a step, multiplications
+  /// @returns whether there is no friction and TouchingMatrix::set() finds few operations
+  bool set(const StepSystem& system, const CompliantLists& lists, std::int64_t most_operations);
+  /// Multiplications of a factorization.
+  std::int64_t operations() const { return matrix_.operations(); }
 
   /// A step. @param defect   b + J^T r - A v, [rows][3]
   /// @param error     of x and impulse

@@ -17,20 +17,19 @@ namespace {
 constexpr std::int64_t most_operations = 1'000'000'000;
 // Steps of Newton's method, after which the iteration goes on.
 constexpr std::int64_t most_newton = 40;
+// Multiplications of a factorization for Newton's method: where it comes first, about a
+// millisecond, and where it follows.
+constexpr std::int64_t most_at_first = 4'000'000, most_later = 400'000'000;
+// It follows once the iteration has had so many times those of a factorization.
+constexpr std::int64_t newton_worth = 3;
+constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 // Of the tolerance, at which they end: on stiff cloth the blocks D^-1, in which laws are measured,
 // are far below A^-1. A step or two more take little.
 constexpr double newton_share = 0.01;
+// Of the tolerance, at which convergence is checked: a check takes tens of products with A.
+constexpr double check_share = 0.2;
 // Up to these sizes the contact solver is quick where the iteration fails.
 constexpr std::int64_t small_contacts = 256, small_rows = 128;
-
-/// [coupling islands] elastic body that gives way by its factor, or -1.
-std::vector<std::int32_t> bodies_of_islands(const Model& model, const RestFactors& factors) {
-  std::vector<std::int32_t> body_of;
-  for (std::int32_t i = 0; i < model.island_count; ++i) {
-    body_of.push_back(factors.body_of_island(i));
-  }
-  return body_of;
-}
 
 }  // namespace
 
@@ -42,12 +41,14 @@ TwoLevelSolver::TwoLevelSolver(const Model& model,
       threads_(thread_count(options.threads)),
       exec_(threads_, StageClocks::off),
       factors_(std::move(factors)),
-      maker_(bodies_of_islands(model, *factors_), CoupledControl::omega(options.expert.relaxation)),
+      maker_(factors_->bodies_of_blocks(), CoupledControl::omega(options.expert.relaxation)),
+      bare_(model.body_island.size(), 0),
       elastic_(factors_),
       blocks_(threads_),
       step_(model, threads_),
       sweeps_(blocks_, switches_, threads_),
-      newton_(blocks_, switches_) {}
+      newton_(blocks_, switches_),
+      check_(blocks_, step_, switches_) {}
 
 /// Sets bodies and contacts in the metric M, and starts from the velocities without contact.
 void TwoLevelSolver::prepare(double damping) {
@@ -68,13 +69,22 @@ void TwoLevelSolver::prepare(double damping) {
   contact_velocity_.resize(impulse_.size());
   free_.resize(impulse_.size());
   blocks_.velocities_of_rows(x_.data(), free_.data());
+  check_.set(lists(), free_);
+  product_operations_ = 0;
+  for (const std::int32_t row : lists().system_row) {
+    product_operations_ += 9 * (system_->rows.free_end[row] - system_->rows.start[row]);
+  }
   least_error_ = CoupledError::least(step_.run(x_, force_, y_));
   for (std::size_t i = 0; i < given_.change.size(); ++i) x_[i] += given_.change[i];
 }
 
 TwoLevelSolver::Next TwoLevelSolver::start(double damping, CoupledOutcome& outcome) {
   prepare(damping);
-  if (has_elastic() || !newton_.set(*system_, lists())) return Next::proceeds;
+  checked_ = 0;
+  has_newton_ = false;
+  newton_at_ = has_elastic() ? never : newton_worth * most_at_first;
+  if (has_elastic() || !newton_.set(*system_, lists(), most_at_first)) return Next::proceeds;
+  newton_at_ = never;
   const Next end = find_by_newton(outcome);
   return end == Next::fails ? Next::proceeds : end;
 }
@@ -83,6 +93,10 @@ View<double> TwoLevelSolver::mixed() {
   const std::int64_t size = Mixer::columns * 3 * lists().row_count();
   mixed_.resize(index_of(size));
   return {mixed_.data(), size};
+}
+
+CoupledControl TwoLevelSolver::control(bool ends_early) {
+  return control(ends_early, (check_.is_needed() ? check_share : 1) * options_.tolerance);
 }
 
 CoupledControl TwoLevelSolver::control(bool ends_early, double tolerance) {
@@ -106,6 +120,12 @@ std::optional<CoupledError> TwoLevelSolver::find_error(const CoupledOutcome&) {
   return CoupledError::of(defect, sums.natural, sums.work);
 }
 
+double TwoLevelSolver::excess(const CoupledOutcome&) {
+  if (!check_.is_needed()) return 0;
+  checked_ = check_.run(x_, y_, impulse_, contact_velocity_);
+  return checked_ / options_.tolerance;
+}
+
 void TwoLevelSolver::keep(double residual) {
   best_.residual = residual;
   best_.x = x_;
@@ -123,8 +143,20 @@ bool TwoLevelSolver::goes_on(std::int64_t sweeps) const {
   return !options_.progress || options_.progress({clock_.seconds(), sweeps, 0});
 }
 
-TwoLevelSolver::Next TwoLevelSolver::limit(const CoupledOutcome& outcome) const {
-  if (sweeps_.operations() > most_operations) return Next::fails;
+/// Whether Newton's method follows the iteration now.
+bool TwoLevelSolver::is_newtons_turn(const CoupledOutcome& outcome) {
+  const auto is_over = [&] {
+    return sweeps_.operations() + outcome.outer_iterations * product_operations_ >= newton_at_;
+  };
+  if (!has_newton_ && is_over()) {
+    has_newton_ = newton_.set(*system_, lists(), most_later);
+    newton_at_ = has_newton_ ? newton_worth * newton_.operations() : never;
+  }
+  return has_newton_ && is_over();
+}
+
+TwoLevelSolver::Next TwoLevelSolver::limit(const CoupledOutcome& outcome) {
+  if (sweeps_.operations() > most_operations || is_newtons_turn(outcome)) return Next::fails;
   return goes_on(outcome.sweeps) ? Next::proceeds : Next::is_stopped;
 }
 
@@ -157,6 +189,26 @@ CoupledControl::Next TwoLevelSolver::find_by_newton(CoupledOutcome& outcome) {
   return Next::fails;
 }
 
+/// Newton's method from the best iterate; where it fails, the iteration from the better one of
+/// both.
+void TwoLevelSolver::go_on_by_newton(CoupledOutcome& outcome) {
+  take_best();
+  Best before = best_;
+  checked_ = 0;
+  Next end = find_by_newton(outcome);
+  newton_at_ = never;
+  has_newton_ = false;
+  if (end == Next::fails) {
+    if (!(best_.residual < before.residual)) best_ = std::move(before);
+    take_best();
+    before = best_;
+    end = iterate_coupled<Mixer>(*this, control(false), CoupledControl::most_iterations, outcome);
+    if (end == Next::fails && before.residual < best_.residual) best_ = std::move(before);
+  }
+  outcome.converged = end == Next::converges;
+  outcome.is_stopped = end == Next::is_stopped;
+}
+
 /// Whether the contact solver would be quick.
 bool TwoLevelSolver::is_small() const {
   return blocks_.count() <= small_contacts && lists().row_count() <= small_rows;
@@ -169,7 +221,7 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
   system_ = &system;
   problem_ = &problem;
   start_ = &velocity;
-  ElasticSpace::find_bare(problem, bare_);
+  ElasticSpace::find_bare(problem, maker_.body_of(), bare_);
   maker_.make(system.rows, problem.islands, problem.takes, bare_);
   if (lists().row_count() == 0) {
     impulse_ = problem.laws.impulse_guess;
@@ -179,6 +231,11 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
   given_.set(problem, lists(), *factors_);
   elastic_.set_bodies(lists(), problem.rows, problem.contacts);
   CoupledOutcome outcome = solve_coupled<Mixer>(*this);
+  const bool has_failed = !outcome.converged && !outcome.is_stopped;
+  if (has_failed && newton_at_ != never &&
+      (has_newton_ || newton_.set(system, lists(), most_later))) {
+    go_on_by_newton(outcome);
+  }
   outcome.is_result =
       outcome.converged || ((outcome.is_stopped || !is_small()) && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
@@ -186,6 +243,8 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
     outcome.residual = best_.residual;
     take_best();
     blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
+  } else if (checked_ > 0) {
+    outcome.residual = checked_;
   }
   given_.finish(lists(), x_, impulse_, velocity);
   return outcome;

@@ -11,6 +11,7 @@
 #include "host/base/stopwatch.hpp"
 #include "host/exec/exec_cpu.hpp"
 #include "host/simulate/solve/two_level/compliant_list_maker.hpp"
+#include "host/simulate/solve/two_level/residual_check.hpp"
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
 #include "host/simulate/solve/two_level/touching_newton.hpp"
 #include "host/simulate/solve/two_level/two_level_step.hpp"
@@ -24,8 +25,9 @@ namespace tetwarp {
 /// the velocities without contact, with M^-1 = omega D^-1, D the diagonal blocks of A, or
 /// R A_0^-1 R^T for single elastic bodies (ElasticSpace). Sweeps change r (TwoLevelSweeps).
 ///
-/// Without elastic bodies and friction, and where a factorization of A with its contacts has few
-/// multiplications, Newton's method (TouchingNewton) comes first.
+/// Without elastic bodies and friction Newton's method (TouchingNewton) comes first where a
+/// factorization of A with its contacts has few multiplications, else once the iteration has had
+/// some times as many; where it fails, the iteration goes on.
 ///
 /// Anderson's method accelerates v; with elastic bodies only from the second iteration on, and only
 /// while the error of the equations is larger than that of the laws. The iteration has converged
@@ -65,11 +67,11 @@ class TwoLevelSolver {
   View<double> mixed();
   bool has_elastic() const { return !elastic_.bodies().empty(); }
   Next start(double damping, CoupledOutcome& outcome);
-  CoupledControl control(bool ends_early) { return control(ends_early, options_.tolerance); }
+  CoupledControl control(bool ends_early);
   std::optional<CoupledError> find_error(const CoupledOutcome& outcome);
   void keep(double residual);
-  static double excess(const CoupledOutcome&) { return 0; }
-  Next limit(const CoupledOutcome& outcome) const;
+  double excess(const CoupledOutcome& outcome);
+  Next limit(const CoupledOutcome& outcome);
   void solve_contacts(double enough, CoupledOutcome& outcome);
   void take_image();
 
@@ -89,6 +91,8 @@ class TwoLevelSolver {
   void prepare(double damping);
   CoupledControl control(bool ends_early, double tolerance);
   Next find_by_newton(CoupledOutcome& outcome);
+  bool is_newtons_turn(const CoupledOutcome& outcome);
+  void go_on_by_newton(CoupledOutcome& outcome);
   bool goes_on(std::int64_t sweeps) const;
   void take_best();
   bool is_small() const;
@@ -105,19 +109,25 @@ class TwoLevelSolver {
   std::shared_ptr<RestFactors> factors_;
   CompliantListMaker maker_;
   TwoLevelStart given_;
-  std::vector<std::uint8_t> bare_;  ///< [coupling islands] see ElasticSpace::find_bare()
+  std::vector<std::uint8_t> bare_;  ///< [bodies of the model] see ElasticSpace::find_bare()
   ElasticSpace elastic_;
   TouchingBlocks blocks_;
   TwoLevelStep step_;
   TwoLevelSweeps sweeps_;
   TouchingNewton newton_;
+  ResidualCheck check_;
   std::vector<double> x_, force_;        ///< [rows][3]
   std::vector<double> y_;                ///< as TouchingBlocks has it
   std::vector<double> weights_, mixed_;  ///< of AndersonMixer
   std::vector<std::int32_t> working_;    ///< contacts, of TouchingBlocks::measure()
   std::vector<double> stepped_;          ///< [3 contacts] impulses of the last step
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
+  double checked_ = 0;                                     ///< eta by the last run of check_
   double least_error_ = 0;                                 ///< of the velocities without contact
+  std::int64_t product_operations_ = 0;                    ///< multiplications of a product with A
+  /// Multiplications of the iteration after which Newton's method follows, or is asked for its own.
+  std::int64_t newton_at_ = 0;
+  bool has_newton_ = false;  ///< whether they are those after which it follows
   Best best_;
 };
 

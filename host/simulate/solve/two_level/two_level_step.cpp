@@ -106,7 +106,9 @@ void TwoLevelStep::add_elastic(const TouchingBlocks& blocks,
       threads_, static_cast<std::int64_t>(elastic_->bodies().size()), [&](std::int64_t b) {
         const ElasticBody& own = elastic_->bodies()[index_of(b)];
         const std::size_t begin = 3 * index_of(own.row_begin), end = 3 * index_of(own.row_end);
-        elastic_->solve(index_of(b), pull_.data() + begin, moved_.data() + begin);
+        const double* const pull = pull_.data();
+        if (std::all_of(pull + begin, pull + end, [](double value) { return value == 0; })) return;
+        elastic_->solve(index_of(b), pull + begin, moved_.data() + begin);
         for (std::size_t i = begin; i < end; ++i) y[i] += moved_[i];
       });
 }

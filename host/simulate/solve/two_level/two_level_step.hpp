@@ -6,6 +6,7 @@
 
 #include "host/simulate/solve/two_level/elastic_space.hpp"
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
+#include "host/simulate/step/stepper.hpp"
 #include "kernels/body/row_product.hpp"
 
 namespace tetwarp {

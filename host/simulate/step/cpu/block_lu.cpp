@@ -159,6 +159,7 @@ void BlockLu::solve(std::span<double> x) {
   }
   for (std::int32_t j = 0; j < count_; ++j) {
     const double* const own = work_.data() + 3 * j;
+    if (own[0] == 0 && own[1] == 0 && own[2] == 0) continue;  // as in most columns of a sparse x
     for (std::int64_t e = start_[index_of(j)] + 1; e < start_[index_of(j) + 1]; ++e) {
       const double* const l = lower(e);
       double* const out = work_.data() + 3 * row_[index_of(e)];

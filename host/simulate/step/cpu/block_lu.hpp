@@ -21,6 +21,8 @@ class BlockLu {
   void set_pattern(std::int32_t count, const std::vector<Entry>& entries);
   /// Multiplications of factor().
   std::int64_t operations() const { return operations_; }
+  /// Multiplications of solve().
+  std::int64_t solve_operations() const { return 18 * static_cast<std::int64_t>(row_.size()); }
 
   /// Sets all blocks to zero.
   void clear();

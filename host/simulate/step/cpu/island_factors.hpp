@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "host/simulate/step/cpu/block_lu.hpp"
+#include "host/simulate/step/cpu/row_range_lu.hpp"
 #include "kernels/body/island_cg.hpp"
 
 namespace tetwarp {
@@ -20,13 +20,21 @@ class IslandFactors {
   std::int64_t find_worth(const SystemRows& rows, std::int64_t begin, std::int64_t end);
   /// @pre find_worth()
   bool is_possible() const { return lu_ != nullptr; }
+  /// Whether a factorization takes no longer than iterations usually do.
+  bool are_quick() const { return is_possible() && worth_ <= usual_iterations; }
   /// a.x = A^-1 b on the rows of the island; they stay as they are if A has no factors.
   void solve(const GradientArrays<double>& a, std::int64_t begin);
+  /// What solve() has made since forget(), or null.
+  RowRangeLu* made() { return is_made_ ? lu_.get() : nullptr; }
+  void forget() { is_made_ = false; }
 
  private:
-  std::unique_ptr<BlockLu> lu_;  ///< null: not possible
-  std::int64_t row_count_ = 0;   ///< of the pattern
+  static constexpr std::int64_t usual_iterations = 40;
+
+  std::unique_ptr<RowRangeLu> lu_;  ///< null: not possible
+  std::int64_t row_count_ = 0;      ///< of the pattern
   std::int64_t worth_ = 0;
+  bool is_made_ = false;
   std::vector<double> x_;
 };
 

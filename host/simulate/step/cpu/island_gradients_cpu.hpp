@@ -40,7 +40,8 @@ class IslandGradients<CpuExec> {
 
   /// Solves all islands and calls take(end) for each. Small islands are one task each. Islands that
   /// RestGradients can solve and that have not converged after `first_iterations` follow with it;
-  /// others that IslandFactors can solve follow with it after iterations that take as long.
+  /// others that IslandFactors can solve follow with it after iterations that take as long, or
+  /// at once where that is not long.
   /// @param proceed  as of island_cg(); called by this thread only
   template <class T, class Proceed, class Take>
   void solve(const GradientArrays<T>& arrays,
@@ -52,11 +53,13 @@ class IslandGradients<CpuExec> {
       const std::int64_t most = options.max_iterations;
       if (can_follow<T>(island)) return std::min(most, first_iterations);
       if constexpr (!std::is_same_v<T, double>) return most;
-      return std::min(most, factors_[static_cast<std::size_t>(island)].find_worth(
-                                arrays.rows, begin_of(island), end_of(island)));
+      IslandFactors& factors = factors_[static_cast<std::size_t>(island)];
+      const std::int64_t worth = factors.find_worth(arrays.rows, begin_of(island), end_of(island));
+      return std::min(most, factors.are_quick() ? 0 : worth);
     };
     const auto most_in_all = [&](std::int32_t) { return options.max_iterations; };
     for (GradientEnd& end : ends_) end = {};
+    for (IslandFactors& factors : factors_) factors.forget();
     if ((goes_on_ = proceed(0))) {
       solve_small(small_, arrays, options.tolerance, most_at_first);
       solve_large(large_, arrays, options.tolerance, most_at_first, proceed);
@@ -72,6 +75,9 @@ class IslandGradients<CpuExec> {
       take(end);
     }
   }
+
+  /// [islands] Factors of the last solve.
+  std::vector<IslandFactors>& factors() { return factors_; }
 
  private:
   using Islands = std::vector<std::int32_t>;
@@ -143,8 +149,9 @@ class IslandGradients<CpuExec> {
     if constexpr (std::is_same_v<T, double>) {
       for (std::size_t i = 0; i < ends_.size(); ++i) {
         const auto island = static_cast<std::int32_t>(i);
-        const bool is_left = !ends_[i].is_converged && ends_[i].iterations >= first_iterations &&
-                             ends_[i].iterations < options.max_iterations;
+        const bool is_begun = ends_[i].iterations >= first_iterations || factors_[i].are_quick();
+        const bool is_left =
+            !ends_[i].is_converged && is_begun && ends_[i].iterations < options.max_iterations;
         if (!is_left || (!can_follow<T>(island) && !factors_[i].is_possible())) continue;
         improved_.push_back(island);
         (is_large(island) ? improved_large_ : improved_small_).push_back(island);

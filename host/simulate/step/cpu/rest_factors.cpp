@@ -14,18 +14,33 @@ constexpr std::size_t most_time_steps = 3;  // whose factors are kept
 }  // namespace
 
 RestFactors::RestFactors(const Model& model)
-    : model_(model), body_of_island_(index_of(model.island_count), -1) {
-  std::vector<std::int32_t> bodies(index_of(model.island_count), 0);
-  for (std::size_t body = 0; body < model.body_island.size(); ++body) {
-    const std::int32_t island = model.body_island[body];
+    : model_(model),
+      has_(model.body_island.size(), 0),
+      has_any_(index_of(model.island_count), 0),
+      bodies_of_island_(index_of(model.island_count)) {
+  std::vector<std::uint8_t> has_other(index_of(model.island_count), 0);
+  for (std::size_t b = 0; b < has_.size(); ++b) {
+    const std::int32_t island = model.body_island[b];
     if (island < 0) continue;
-    const auto own = static_cast<std::int32_t>(body);
-    ++bodies[index_of(island)];
-    body_of_island_[index_of(island)] = RestFactor::is_possible(model, own) ? own : -1;
+    const auto body = static_cast<std::int32_t>(b);
+    has_[b] = RestFactor::is_possible(model, body) ? 1 : 0;
+    bodies_of_island_[index_of(island)].push_back(body);
+    (has(body) ? has_any_ : has_other)[index_of(island)] = 1;
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i] > 1) body_of_island_[i] = -1;
+  for (std::size_t i = 0; i < has_other.size(); ++i) {
+    if (has_other[i] != 0) bodies_of_island_[i].clear();
   }
+}
+
+std::vector<std::int32_t> RestFactors::bodies_of_blocks() const {
+  std::vector<std::int32_t> body_of(index_of(model_.block_count()), -1);
+  for (std::size_t b = 0; b < has_.size(); ++b) {
+    const auto body = static_cast<std::int32_t>(b);
+    if (!has(body)) continue;
+    std::fill(body_of.begin() + model_.body_node[b], body_of.begin() + model_.body_node[b + 1],
+              body);
+  }
+  return body_of;
 }
 
 void RestFactors::set_time_step(double time_step) {

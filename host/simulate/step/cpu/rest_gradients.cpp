@@ -3,8 +3,9 @@
 #include "host/simulate/step/cpu/rest_gradients.hpp"
 
 #include <algorithm>
-#include <array>
+#include <span>
 
+#include "host/base/index_of.hpp"
 #include "host/exec/exec_cpu.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"
 
@@ -33,8 +34,7 @@ struct RestSystem {
 
   const GradientArrays<double>& a;
   std::int64_t begin, end;
-  RestFactor& factor;
-  std::array<double, 9> rotation;
+  std::span<const RestGradients::TurnedFactor> bodies;  ///< in the order of their rows
   View<double> x, r, z, p, q;
   double target = 0;  ///< z is zero, which ends a solve, where |r|^2 is not larger
 
@@ -45,8 +45,12 @@ struct RestSystem {
   void precondition(std::int64_t) const {
     if (target > 0 && square(a, r, begin, end) <= target) {
       std::fill_n(z.data + 3 * begin, 3 * (end - begin), 0.0);
-    } else {
-      factor.solve_turned(rotation, r.data + 3 * begin, z.data + 3 * begin);
+      return;
+    }
+    std::int64_t first = 3 * begin;
+    for (const auto& own : bodies) {
+      own.factor->solve_turned(own.rotation, r.data + first, z.data + first);
+      first += 3 * std::int64_t{own.factor->node_count()};
     }
   }
 };
@@ -54,7 +58,8 @@ struct RestSystem {
 }  // namespace
 
 RestGradients::RestGradients(const Model& model, std::shared_ptr<RestFactors> factors)
-    : factors_(factors ? std::move(factors) : std::make_shared<RestFactors>(model)) {}
+    : factors_(factors ? std::move(factors) : std::make_shared<RestFactors>(model)),
+      turned_(index_of(model.island_count)) {}
 
 void RestGradients::begin(double time_step, const double* position) {
   factors_->set_time_step(time_step);
@@ -66,9 +71,13 @@ std::int64_t RestGradients::solve(const GradientArrays<double>& a,
                                   std::int64_t begin,
                                   std::int64_t end,
                                   const GradientOptions& options) {
-  RestFactor& factor = factors_->of_body(factors_->body_of_island(island));
-  RestSystem system{a,   begin, end, factor, factor.mean_rotation(position_),
-                    a.x, a.r,   a.z, a.p,    a.q};
+  std::vector<TurnedFactor>& turned = turned_[index_of(island)];
+  turned.clear();
+  for (const std::int32_t body : factors_->bodies_of_island(island)) {
+    RestFactor& factor = factors_->of_body(body);
+    turned.push_back({&factor, factor.mean_rotation(position_)});
+  }
+  RestSystem system{a, begin, end, turned, a.x, a.r, a.z, a.p, a.q};
   std::copy_n(a.x.data + 3 * begin, 3 * (end - begin), a.p.data + 3 * begin);
   system.multiply(0);
   for (std::int64_t k = 3 * begin; k < 3 * end; ++k) a.r[k] = a.load[k] - a.q[k];

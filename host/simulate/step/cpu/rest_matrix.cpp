@@ -3,6 +3,7 @@
 #include "host/simulate/step/cpu/rest_matrix.hpp"
 
 #include <Eigen/OrderingMethods>
+#include <algorithm>
 
 #include "host/base/index_of.hpp"
 
@@ -90,10 +91,26 @@ void RestMatrix::add_masses(double time_step) {
   }
 }
 
+/// Whether a point moves with unknowns of another body.
+bool RestMatrix::is_elsewhere(const ModelPoint& point) const {
+  const auto has_unknowns = [&](std::int64_t block) {
+    return model_.prescribed[index_of(block)] == 0;
+  };
+  if (point.rigid >= 0) return has_unknowns(model_.node_count + 2 * std::int64_t{point.rigid});
+  return std::ranges::any_of(point.node, [&](std::int32_t node) {
+    return node >= 0 && (node < begin_ || node >= end_) && has_unknowns(node);
+  });
+}
+
+/// Of a spring between two bodies the entries between them are left out. With its own ones twice,
+/// v^T A v of all bodies together is at most that of the matrices at rest.
 void RestMatrix::add_springs(double time_step) {
   const ModelSprings& springs = model_.springs;
   for (std::size_t s = 0; s < springs.a.size(); ++s) {
-    const double factor = time_step * (time_step * springs.stiffness[s] + springs.damping[s]);
+    const bool is_between =
+        springs.handle[s] < 0 && (is_elsewhere(springs.a[s]) || is_elsewhere(springs.b[s]));
+    const double factor =
+        (is_between ? 2 : 1) * time_step * (time_step * springs.stiffness[s] + springs.damping[s]);
     const auto each = [&](const auto& use) {
       for (std::size_t k = 0; k < 4; ++k) use(springs.a[s].node[k], springs.a[s].weight[k]);
       if (springs.handle[s] >= 0) return;

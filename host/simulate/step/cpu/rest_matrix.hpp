@@ -32,6 +32,7 @@ class RestMatrix {
   void add(std::int32_t a, std::int32_t b, const double* block);
   void add_scalar(std::int32_t a, std::int32_t b, double value);
   void add_masses(double time_step);
+  bool is_elsewhere(const ModelPoint& point) const;
   void add_springs(double time_step);
 
   const Model& model_;

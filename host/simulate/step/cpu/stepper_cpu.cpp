@@ -24,7 +24,11 @@ class CpuStepper final : public BodyStepper {
     rest_.begin(input.time_step, pipeline_.position_of(0));
     return pipeline_.solve(input);
   }
-  StepSystem system() override { return pipeline_.system(); }
+  StepSystem system() override {
+    StepSystem system = pipeline_.system();
+    system.factors = &islands_.factors();
+    return system;
+  }
   void get_velocities(std::vector<Point3>& velocity) const override {
     pipeline_.get_velocities(velocity);
   }

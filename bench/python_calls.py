@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""What a call of the Python package takes beyond the library, on an image of 64^3 voxels.
+
+    PYTHONPATH=build/release/python python3 bench/python_calls.py
+
+`python` is the call with a Warper of the module that does nothing, so that what is left runs in
+Python; `module` is the time of a step in the module beyond the total in the library's report. Both
+are microseconds of the processor, the least of 300 calls, each after 4 MiB of other memory were
+written, as a warp does. Arrays that a step writes are given.
+"""
+
+import json
+import time
+
+import numpy as np
+
+import tetwarp
+from tetwarp import _core
+
+SIZE = 64
+
+
+class Nothing:
+    """In place of the module's Warper."""
+
+    def __init__(self, *_, **__):
+        pass
+
+    def step(self, *_):
+        return {}
+
+
+def least(call, runs=300):
+    """Least of call(), which returns microseconds."""
+    other = np.ones(4 << 20, np.uint8)
+    results = []
+    for _ in range(runs):
+        other[::64] += 1
+        results.append(call())
+    return round(min(results), 1)
+
+
+def timed(call):
+    start = time.process_time_ns()
+    call()
+    return (time.process_time_ns() - start) / 1e3
+
+
+def main():
+    volume = tetwarp.phantom(shape=(SIZE, SIZE, SIZE))
+    mesh = tetwarp.lattice_mesh(volume, cells=6, threshold=0.1)
+    deformed = tetwarp.deform(*mesh, amount=0.5)
+    out = np.empty_like(volume.array)
+    options = dict(threads=1, backend="cpu")
+    warper = tetwarp.Warper(volume, *mesh, **options)
+    inner = warper._warper
+
+    def beyond_total():
+        start = time.perf_counter_ns()
+        report = inner.step(deformed, [out], {}, False, 0, None)
+        return (time.perf_counter_ns() - start) / 1e3 - 1e6 * report["timings"]["total"]
+
+    module = least(beyond_total)
+    step = min(timed(lambda: warper(deformed, out=out)) for _ in range(300))
+    whole = min(timed(lambda: tetwarp.warp(volume, *mesh, deformed, out=out, **options))
+                for _ in range(300))
+    warper._warper, kept = Nothing(), _core.Warper
+    _core.Warper = Nothing
+    python = {
+        "step": least(lambda: timed(lambda: warper(deformed, out=out))),
+        "warp": least(lambda: timed(
+            lambda: tetwarp.warp(volume, *mesh, deformed, out=out, **options))),
+    }
+    _core.Warper = kept
+    print(json.dumps({"voxels": SIZE**3, "nodes": len(mesh.points), "python": python,
+                      "module": {"step": module}, "call": {"step": step, "warp": whole}}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,72 @@
+/// @file transform_run.hpp
+/// Resamples the steps of a volume by a transform: as a whole, or in parts within a limit of
+/// memory.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/io.hpp>
+#include <tetwarp/resample.hpp>
+#include <tetwarp/transform_file.hpp>
+
+#include "host/cli/common/progress_bar.hpp"
+#include "host/cli/job/job_plan.hpp"
+#include "host/cli/job/job_result.hpp"
+#include "host/cli/job/output_writer.hpp"
+#include "host/cli/job/warp_arguments.hpp"
+#include "host/cli/warp/warp_job.hpp"
+#include "host/warp/resample_blocks.hpp"
+
+namespace tetwarp::cli {
+
+/// The volume to resample.
+struct TransformSource {
+  VolumeReadOptions read;
+  VolumeHeader header;
+  std::vector<ArrayHeader> arrays;
+  std::vector<std::int64_t> steps;
+  bool is_series = false;
+};
+
+/// One job. As a whole one array of a step is in memory at a time, and all displacements; in parts
+/// windows of them.
+class TransformRun {
+ public:
+  /// Opens the transform and plans the memory.
+  /// @param arguments, source  kept by the caller
+  /// @throws IoError, std::invalid_argument  what open_transform() throws; a job that does not fit
+  ///                                         in memory and cannot be computed in parts
+  TransformRun(const WarpArguments& arguments,
+               const TransformSource& source,
+               const ResampleOptions& options);
+
+  /// What the transform was taken for.
+  const std::string& convention() const { return parts_.file.convention; }
+
+  /// Of --dry-run: states memory and parts of all steps, and why they cannot run here.
+  void plan(JobResult& result);
+
+  void run(const JobContext& context, JobResult& result);
+
+ private:
+  bool is_whole() const { return plan_.memory_limit == 0; }
+  void plan_memory();
+  void read_fields();
+  PartLimits limits() const;
+  ResampleBlocks blocks() const;
+  std::optional<ResamplePart> next_part(ResampleBlocks& blocks) const;
+  StepPlan plan_of(std::int64_t step);
+  void run_step(std::int64_t step, OutputWriter& writer, ProgressBar& bar);
+  void run_parts(std::int64_t step, OutputWriter& writer, ProgressBar& bar, JobResult& result);
+
+  const WarpArguments& arguments_;
+  const TransformSource& source_;
+  TransformParts parts_;
+  ResampleOptions options_;
+  VolumePlan plan_;
+  double fixed_bytes_ = 0;  ///< memory of the process beside samples and displacements
+};
+
+}  // namespace tetwarp::cli

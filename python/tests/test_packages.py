@@ -1,0 +1,97 @@
+"""Files that tetwarp-read was built without a library for are read by packages of Python. Errors of
+such a build are raised in place of the calls that read."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import tetwarp
+
+
+@pytest.fixture
+def lacking(monkeypatch):
+    """As a wheel: no VTK, no GDCM."""
+    def refuse(path, *_):
+        kind = "DICOM" if str(path).endswith(".dcm") else "VTK's files"
+        raise tetwarp.IoError(f"{path}: this build cannot read {kind}; install it and build again")
+
+    for name in ("MeshFile", "read_surface", "kind_of"):
+        monkeypatch.setattr(tetwarp._core, name, refuse)
+
+
+def test_meshes_and_surfaces_are_read_by_meshio(mesh, twisted, tmp_path, lacking):
+    meshio = pytest.importorskip("meshio")
+    written = tetwarp.to_meshio(mesh)
+    written.point_data = {"displacement": twisted - mesh.points, "heat": mesh.points[:, 0]}
+    written.write(tmp_path / "mesh.vtu")
+    points, faces = tetwarp.boundary_surface(*mesh)
+    meshio.Mesh(points, [("triangle", faces)]).write(tmp_path / "surface.ply")
+
+    file = tetwarp.read(tmp_path / "mesh.vtu")
+    turned = tetwarp.MeshFile(tmp_path / "mesh.vtu", axes="lps")
+    surface = tetwarp.read(tmp_path / "surface.ply")
+
+    assert np.array_equal(file.mesh.points, mesh.points)
+    assert np.array_equal(file.mesh.cells, mesh.cells)
+    assert len(file) == 1 and np.allclose(file.step(0), twisted, rtol=0, atol=1e-12)
+    assert file.not_read == ["heat"]
+    assert np.array_equal(turned.step(0), file.step(0) * (-1, -1, 1))
+    assert np.array_equal(surface.points, points) and np.array_equal(surface.triangles, faces)
+
+
+def test_images_are_read_by_vtk(tmp_path, lacking):
+    vtk = pytest.importorskip("vtk")
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    samples = np.arange(2 * 3 * 4 * 2, dtype=np.int16).reshape(2, 3, 4, 2)
+    turn = [(0.8, -0.6, 0), (0.6, 0.8, 0), (0, 0, 1)]
+    image = vtk.vtkImageData()
+    image.SetExtent(5, 8, 6, 8, 7, 8)
+    image.SetSpacing(1, 2, 3)
+    image.SetOrigin(10, 20, 30)
+    image.SetDirectionMatrix(np.ravel(turn))
+    array = numpy_to_vtk(samples.reshape(-1, 2), deep=True)
+    array.SetName("pairs")
+    image.GetPointData().AddArray(array)
+    writer = vtk.vtkXMLImageDataWriter()
+    writer.SetFileName(str(tmp_path / "image.vti"))
+    writer.SetInputData(image)
+    writer.Write()
+
+    for name in ("", "pairs"):
+        volume = tetwarp.read(tmp_path / "image.vti", array=name)
+        assert np.array_equal(volume.array, samples) and volume.name == "pairs"
+        first = np.array((10, 20, 30)) + np.array(turn) @ (5, 12, 21)
+        assert np.allclose(volume.grid.points()[0, 0, 0], first)
+        assert np.allclose(volume.affine[:3, :3], np.array(turn) * (1, 2, 3))
+    with pytest.raises(tetwarp.IoError, match="VTK finds no array triples"):
+        tetwarp.read(tmp_path / "image.vti", array="triples")
+
+
+@pytest.mark.parametrize("name, module, pip", [
+    ("a.vtu", "meshio", "meshio"), ("a.ply", "meshio", "meshio"),
+    ("a.vti", "vtkmodules.vtkIOXML", "vtk"), ("a.dcm", "pydicom", "pydicom")])
+def test_the_package_that_is_missing_is_named(name, module, pip, tmp_path, lacking, monkeypatch):
+    monkeypatch.setitem(sys.modules, module, None)
+
+    text = f"{name}: this build .*; in Python: python3 -m pip install {pip}$"
+    with pytest.raises(tetwarp.IoError, match=text):
+        tetwarp.read(tmp_path / name)
+
+
+def test_damaged_files_are_named(tmp_path, lacking):
+    meshio = pytest.importorskip("meshio")
+    (tmp_path / "mesh.vtu").write_text("<VTKFile/>")
+    meshio.Mesh(np.eye(3), [("line", [(0, 1)])]).write(tmp_path / "lines.vtk")
+
+    for name in ("mesh.vtu", "lines.vtk"):
+        with pytest.raises(tetwarp.IoError, match=name):
+            tetwarp.read(tmp_path / name)
+
+
+def test_other_errors_stay_as_they_are(tmp_path):
+    with pytest.raises(tetwarp.IoError) as caught:
+        tetwarp.read(tmp_path / "none.vtu")
+
+    assert "meshio" not in str(caught.value)
