@@ -5,6 +5,7 @@ import importlib
 import inspect
 import os
 import pkgutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -34,37 +35,54 @@ def test_every_public_name_has_a_docstring():
             assert inspect.getdoc(value), name
 
 
+def run_example(name, folder):
+    """What an example prints."""
+    if not EXAMPLES.exists():
+        pytest.skip("no folder examples beside the tests")
+    done = subprocess.run(
+        [sys.executable, EXAMPLES / f"{name}.py"], cwd=folder, text=True, capture_output=True,
+        env=os.environ | {"PYTHONPATH": str(Path(tetwarp.__file__).parents[1])}, check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 @pytest.mark.parametrize("name, written", [
     ("warp_head", ["bent.nii.gz", "field.nii.gz", "head.nii.gz"]),
     ("simulate_warp", [f"orange_{number}.nii.gz" for number in (1, 2, 3, 4)]),
+    ("warp_steps", ["head.nii.gz", "steps.vtkhdf"] + [f"warped_{n}.nii.gz" for n in range(4)]),
 ])
-def test_examples_run(name, written, tmp_path):
-    if not EXAMPLES.exists():
-        pytest.skip("no folder examples beside the tests")
-    package = str(Path(tetwarp.__file__).parents[1])
+def test_examples_write_images(name, written, tmp_path):
+    out = run_example(name, tmp_path)
 
-    done = subprocess.run(
-        [sys.executable, EXAMPLES / f"{name}.py"], cwd=tmp_path, text=True, capture_output=True,
-        env=os.environ | {"PYTHONPATH": package}, check=False,
-    )
-
-    assert done.returncode == 0, done.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == written
-    assert "WarpResult" in done.stdout
+    assert "WarpResult" in out
+    totals = re.findall(r"sum (\S+) of the image", out)
+    assert len(totals) == (4 if name == "warp_steps" else 0)
+    assert all(abs(float(total) - 1) < 0.002 for total in totals)
 
 
-def test_nodes_are_registered():
-    if not EXAMPLES.exists():
-        pytest.skip("no folder examples beside the tests")
+def test_points_come_back(tmp_path):
+    out = run_example("move_points", tmp_path)
 
-    done = subprocess.run(
-        [sys.executable, EXAMPLES / "register_nodes.py"], text=True, capture_output=True,
-        env=os.environ | {"PYTHONPATH": str(Path(tetwarp.__file__).parents[1])}, check=False,
-    )
+    assert float(out.split("misses them by ")[1].split()[0]) < 1e-12
+    assert out.startswith("20 landmarks in cells")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bent.vtkhdf", "surface.vtkhdf"]
 
-    assert done.returncode == 0, done.stderr
-    error = float(done.stdout.split("found with an error of ")[1].split(",")[0])
-    assert error < 0.005
+
+def test_solvers_agree(tmp_path):
+    lines = run_example("compare_solvers", tmp_path).splitlines()
+
+    assert lines[0] == "stack.hdf5"
+    assert len(lines) == 6
+    for line in lines[1:]:
+        assert float(line.split("eta ")[1].split(",")[0]) <= 1e-8, line
+
+
+def test_nodes_are_registered(tmp_path):
+    out = run_example("register_nodes", tmp_path)
+
+    assert float(out.split("found with an error of ")[1].split(",")[0]) < 0.005
 
 
 def test_the_module_has_stubs():
