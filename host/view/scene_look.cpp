@@ -129,8 +129,9 @@ Camera camera_named(const Scene& scene, const std::string& name) {
   if (found != scene.cameras.end()) return found->camera;
   std::string names;
   for (const SceneCamera& own : scene.cameras) names += (names.empty() ? "" : ", ") + own.name;
-  throw std::invalid_argument("camera '" + name + "' is not in the scene, which has " +
-                              (names.empty() ? "none with a name" : names));
+  throw std::invalid_argument("--camera: the scene has no camera '" + name + "'; give " +
+                              (names.empty() ? "" : "one of " + names + ", or ") +
+                              "six numbers: X,Y,Z,TX,TY,TZ");
 }
 }  // namespace
 

@@ -30,16 +30,16 @@ bool write_surface(const Surface& surface, const ScratchFile& file) {
 }  // namespace
 
 Surface coarse_surface(const std::string& path, const Surface& surface, double distance) {
-  const ScratchFile file((std::filesystem::temp_directory_path() / "tetwarp-surface").string());
-  if (!write_surface(surface, file)) {
-    throw IoError(path, "",
-                  "the temporary folder has no room for its surface: " +
-                      std::generic_category().message(errno));
-  }
   std::ostringstream words;
   words << std::setprecision(17) << distance;
   Surface coarse;
   try {
+    const ScratchFile file((std::filesystem::temp_directory_path() / "tetwarp-surface").string());
+    if (!write_surface(surface, file)) {
+      throw IoError(path, "",
+                    "the temporary folder has no room for its surface: " +
+                        std::generic_category().message(errno));
+    }
     run_reader(file.path(), {"coarsen", words.str()}, limits_for(file.path()), [&](auto& message) {
       message(coarse.points);
       message(coarse.triangles);

@@ -74,9 +74,11 @@ def test_rules_name_what_is_wrong(box):
         ({"label_rule": "most"}, "label_rule"),
         ({"label_rule": "gaussian", "label_gaussian": 2}, "label_gaussian: expected a pair"),
         ({"label_rule": "gaussian", "label_gaussian": (1, "x")}, "label_gaussian"),
-        ({"label_rule": "gaussian", "label_gaussian": (4, 3)}, "at most 8 voxels"),
+        ({"label_rule": "gaussian", "label_gaussian": (4, 3)},
+         "^label_gaussian: .*at most 8 voxels"),
+        ({"label_gaussian": (3, 2)}, "^label_gaussian: is for label_rule"),
         ({"label_rule": "volume", "outside": "identity"}, "set outside to background"),
-        ({"label_rule": "volume", "interpolator": "nearest"}, "is for labels"),
+        ({"label_rule": "volume", "interpolator": "nearest"}, "^label_rule: volume is for labels"),
     ]:
         labels, nodes, cells = box
         with pytest.raises(ValueError, match=message):

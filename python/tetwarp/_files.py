@@ -14,7 +14,7 @@ from ._contact import ContactProblem
 from ._fields import Field
 from ._grid import Grid, grid_from_core
 from ._mesh import Mesh, Surface, joined_cells
-from ._packages import MeshioFile, is_lacking, read_image, read_surface
+from ._packages import MeshioFile, check_default, is_lacking, read_image, read_surface
 from ._result import WarpResult
 from ._volume import Volume
 
@@ -46,7 +46,7 @@ class MeshFile:
         except _core.IoError as error:
             if not is_lacking(error):
                 raise
-            self._file = MeshioFile(name, axes, error)
+            self._file = MeshioFile(name, step, axes, error)
         points, tets, hexes = self._file.mesh()
         self.mesh = Mesh(points, joined_cells(tets, hexes))
         self.times: list[float] = list(self._file.times)
@@ -97,6 +97,16 @@ def read_header(path: Any) -> VolumeHeader:
     return VolumeHeader(**{**header, "grid": grid_from_core(header["grid"])})
 
 
+def _mesh_or_surface(name: str) -> MeshFile | Surface:
+    """A VTKHDF UnstructuredGrid; one of triangles alone is a surface."""
+    try:
+        return MeshFile(name)
+    except _core.IoError as error:
+        if "holds no tetrahedron or hexahedron" not in str(error):
+            raise
+        return Surface(*_core.read_surface(name))
+
+
 def read(
     path: Any, *, array: str = "", step: int = 0, axes: str = "ras", labels: bool = False
 ) -> Any:
@@ -105,7 +115,7 @@ def read(
     Parameters
     ----------
     path : volume (VTKHDF ImageData, NIfTI), mesh (VTKHDF UnstructuredGrid, .msh, .vtu, .vtk),
-        surface (.stl, .ply, .obj, .vtp) or contact problem (FCLIB)
+        surface (VTKHDF, .stl, .ply, .obj, .vtp) or contact problem (FCLIB)
     array : of a volume file; empty: its active scalars
     step : of a volume file
     axes : ``"ras"`` or ``"lps"``, of the components of images and of the nodes of meshes that are
@@ -137,7 +147,7 @@ def read(
             return Surface(*_core.read_surface(name))
         kind = _core.kind_of(name)
         if kind == "mesh":
-            return MeshFile(name)
+            return _mesh_or_surface(name)
         if kind == "contact problem":
             return ContactProblem(**_core.read_contact_problem(name))
         samples, grid, read_name, nifti = _core.read_volume(
@@ -145,7 +155,12 @@ def read(
     except _core.IoError as error:
         if not is_lacking(error):
             raise
-        return read_surface(name, error) if is_surface else read_image(name, array, error)
+        if is_surface:
+            return read_surface(name, error)
+        check_default(name, "step", step, 0)
+        check_default(name, "axes", axes, "ras")
+        check_default(name, "labels", labels, False)
+        return read_image(name, array, error)
     return Volume(samples, grid_from_core(grid), read_name, nifti)
 
 

@@ -34,7 +34,14 @@ def _meshio_mesh(path: str, error: Exception) -> Any:
     try:
         return meshio.read(path)
     except (Exception, SystemExit) as reason:  # it ends the program on some damaged files
-        raise _core.IoError(f"{path}: meshio cannot read it: {reason}") from None
+        raise _core.IoError(f"{error}; meshio cannot read it: {reason}") from None
+
+
+def check_default(path: str, name: str, value: Any, default: Any) -> None:
+    """Raises IoError for an argument that the packages do not take."""
+    if value != default:
+        raise _core.IoError(f"{path}: {name}: {value!r} needs tetwarp-read with VTK and GDCM; "
+                            f"without these it is {default!r}")
 
 
 class MeshioFile:
@@ -42,7 +49,8 @@ class MeshioFile:
     `displacement`.
     """
 
-    def __init__(self, path: str, axes: str, error: Exception) -> None:
+    def __init__(self, path: str, rest_step: int, axes: str, error: Exception) -> None:
+        check_default(path, "rest_step", rest_step, 0)
         read = _meshio_mesh(path, error)
         try:
             self._mesh = mesh_from(read)
@@ -51,6 +59,11 @@ class MeshioFile:
         self._turn = np.array((-1.0, -1, 1) if axes == "lps" else (1.0, 1, 1))
         names = [*read.point_data, *read.cell_data]
         self._shift = read.point_data.get("displacement")
+        if self._shift is not None:
+            numbers = np.asarray(self._shift)
+            if numbers.shape != self._mesh.points.shape or not np.isfinite(numbers).all():
+                raise _core.IoError(f"{path}: displacement: expected three finite numbers for each "
+                                    f"of {len(self._mesh.points)} nodes")
         self.times = [] if self._shift is None else [0.0]
         self.not_read = [name for name in names if name != "displacement"]
 
@@ -65,19 +78,25 @@ class MeshioFile:
 
 
 def read_surface(path: str, error: Exception) -> Surface:
-    """The triangles of a file by meshio."""
+    """The triangles of a file by meshio; points at one place are joined."""
     read = _meshio_mesh(path, error)
     others = sorted(set(read.cells_dict) - {"triangle", "line", "vertex"})
     if others or "triangle" not in read.cells_dict:
         raise _core.IoError(f"{path}: expected triangles, found {', '.join(others) or 'none'}")
-    return Surface(np.asarray(read.points, float), read.cells_dict["triangle"].astype(np.int32))
+    points, places = np.unique(np.asarray(read.points, float), axis=0, return_inverse=True)
+    triangles = places.reshape(-1)[read.cells_dict["triangle"]]
+    return Surface(points, triangles.astype(np.int32))
 
 
 def read_image(path: str, array: str, error: Exception) -> Volume:
     """A DICOM file by pydicom, a .vti by VTK."""
-    if "DICOM" in str(error):
+    if "cannot read DICOM" in str(error):
         _package("pydicom", "pydicom", error)
-        return read_dicom(path, axes="RAS")
+        check_default(path, "array", array, "")
+        try:
+            return read_dicom(path, axes="RAS")
+        except ValueError as reason:
+            raise _core.IoError(f"{path}: {str(reason).removeprefix('source: ')}") from None
     reader = _package("vtkmodules.vtkIOXML", "vtk", error).vtkXMLImageDataReader()
     reader.SetFileName(path)
     reader.Update()

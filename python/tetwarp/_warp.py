@@ -29,8 +29,9 @@ from ._volume import Volume, volume_of
 
 Progress = Callable[[float], Any]
 #: Names of arguments in the library's errors, and here.
-_RENAMED = {"background": "default_value", "filter": "interpolator", "quantities": "quantity",
-            "source": "volume", "sources": "volume"}
+_RENAMED = {"background": "default_value", "filter": "interpolator",
+            "label gaussian": "label_gaussian", "label rule": "label_rule",
+            "quantities": "quantity", "source": "volume", "sources": "volume"}
 
 
 def _sources_of(
@@ -153,6 +154,9 @@ class Warper:
     ) -> None:
         if falloff and outside != "falloff":
             raise ValueError(f'falloff: is for outside="falloff", got outside={outside!r}')
+        if label_gaussian != (1.0, 1.0) and label_rule != "gaussian":
+            raise ValueError(
+                f'label_gaussian: is for label_rule="gaussian", got label_rule={label_rule!r}')
         given = list(volume) if isinstance(volume, (list, tuple)) else [volume]
         self._device = Device(given[0], "volume") if given and on_device(given[0]) else None
         if self._device is None:

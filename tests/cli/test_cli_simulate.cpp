@@ -185,7 +185,9 @@ TEST(Simulate, DrawsFromACameraOfTheScene) {
   EXPECT_NE(side, picture("usual", {}));
   const CommandResult missing = scene.simulate({"-o", "out", "--picture", "--camera", "front"});
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_NE(missing.err.find("camera 'front' is not in the scene, which has side, narrow"),
+  EXPECT_NE(missing.err.find(
+                "--camera: the scene has no camera 'front'; give one of side, narrow, or six "
+                "numbers"),
             std::string::npos)
       << missing.err;
   EXPECT_FALSE(fs::exists(scene.in("out", "series.h5")));

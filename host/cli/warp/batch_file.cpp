@@ -98,6 +98,16 @@ class JobReader {
     return files;
   }
 
+  /// Also where a file cannot be opened: the job reports what is wrong with it.
+  static bool is_nifti_or_unreadable(const std::string& file) {
+    try {
+      std::error_code error;
+      return !fs::exists(file, error) || kind_of(file) == FileKind::nifti;
+    } catch (const IoError&) {
+      return true;
+    }
+  }
+
   /// Whether a job warps by a transform: by its key, or because the file called `mesh` is one.
   bool is_by_transform(const Json& job) const {
     if (!job.is_object() || job.contains("transform")) return job.is_object();
@@ -122,8 +132,7 @@ class JobReader {
       return transform_refusal(name, option.results(), has_provenance);
     }
     for (const std::string& file : located_names(job, deformation_key(job))) {
-      std::error_code error;
-      if (name != "fsl" || !fs::exists(file, error) || kind_of(file) == FileKind::nifti) continue;
+      if (name != "fsl" || is_nifti_or_unreadable(file)) continue;
       return "--fsl is for warp fields of FSL, which are NIfTI images; leave it out";
     }
     return {};

@@ -3,6 +3,7 @@
 #include "host/simulate/solve/condensed_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/base/index_of.hpp"
 #include "host/simulate/solve/problem/contact_laws.hpp"
@@ -243,6 +244,19 @@ void CondensedSolver::set_matrix(const ContactRows& rows, const ContactShare& sh
   }
 }
 
+/// Whether velocities are finite, and each contact gives way to its own impulses.
+bool CondensedSolver::is_valid(std::size_t contact_count) const {
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  if (!std::ranges::all_of(force_, is_finite) || !std::ranges::all_of(matrix_, is_finite)) {
+    return false;
+  }
+  for (std::size_t c = 0; c < contact_count; ++c) {
+    const double* const block = matrix_.data() + 9 * (c * contact_count + c);
+    if (!(block[0] > 0 && block[4] > 0 && block[8] > 0)) return false;
+  }
+  return true;
+}
+
 /// u = W r + q with the impulses nu_n of the springs at u_n = 0 as part of r.
 void CondensedSolver::set_problem(const ContactRows& rows,
                                   const ContactProblem& laws,
@@ -291,6 +305,7 @@ const ContactReport* CondensedSolver::solve(const StepSystem& system,
   force_.assign(3 * index_of(system.rows.unknown_count), 0.0);
   find_velocities(system, share);
   set_matrix(rows, share);
+  if (!is_valid(share.contacts.size())) return nullptr;
   set_problem(rows, laws, share);
   solution_ = solver_.solve(problem_);
   std::ranges::fill(force_, 0.0);

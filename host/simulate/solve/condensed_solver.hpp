@@ -46,7 +46,7 @@ class CondensedSolver {
   /// Solves what take() has moved.
   /// @param laws      of all contacts
   /// @param velocity  out: with contact, [block_count]
-  /// @returns null: the system is singular
+  /// @returns null: the system is singular, or so near to it that W is none of contacts
   const ContactReport* solve(const StepSystem& system,
                              const ContactRows& rows,
                              const ContactProblem& laws,
@@ -91,6 +91,7 @@ class CondensedSolver {
   void find_velocities(const StepSystem& system, const ContactShare& share);
   void find_columns(Island& island) const;
   void set_matrix(const ContactRows& rows, const ContactShare& share);
+  bool is_valid(std::size_t contact_count) const;
   void set_problem(const ContactRows& rows, const ContactProblem& laws, const ContactShare& share);
   /// Calls visit(island, row, J) for the blocks with unknowns of a contact; J row by row.
   template <class Visit>

@@ -41,10 +41,16 @@ struct ContactSystem::State {
                   const std::vector<Point3>& change,
                   std::vector<Point3>& velocity,
                   ContactSolveOutcome& outcome);
-  void take_condensed(const CondensedSolver::Limits& limits, BodyStepper& stepper);
+  void take_condensed(const CondensedSolver::Limits& limits,
+                      BodyStepper& stepper,
+                      ContactShare& share);
   bool solve_condensed(BodyStepper& stepper,
+                       ContactShare& share,
                        std::vector<Point3>& velocity,
                        ContactSolveOutcome& outcome);
+  void condense_cheap(BodyStepper& stepper,
+                      std::vector<Point3>& velocity,
+                      ContactSolveOutcome& outcome);
   bool condense_all(BodyStepper& stepper,
                     std::vector<Point3>& velocity,
                     ContactSolveOutcome& outcome);
@@ -71,6 +77,7 @@ struct ContactSystem::State {
   std::vector<Point3> impulses;         ///< [block_count]
   std::vector<Point3> velocity_before;  ///< without contact, [block_count]
   std::vector<Point3> condensed_velocity;
+  bool has_condensed_in_vain = false;  ///< in this solve, what has not converged
 };
 
 /// Whether the options leave the choice of the method.
@@ -125,39 +132,53 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
 
 /// Moves islands of the two-level iteration to a share of CondensedSolver.
 void ContactSystem::State::take_condensed(const CondensedSolver::Limits& limits,
-                                          BodyStepper& stepper) {
+                                          BodyStepper& stepper,
+                                          ContactShare& share) {
   condensed_solver.take(limits, stepper.system().rows, islands, rows.rows(), laws.problem(),
-                        *factors, shares.soft, shares.condensed);
+                        *factors, shares.soft, share);
 }
 
-/// @returns whether its islands have converged; else they are given back, and nothing changes
+/// @returns whether a share of CondensedSolver has converged; else it is given back, and nothing
+///          changes
 bool ContactSystem::State::solve_condensed(BodyStepper& stepper,
+                                           ContactShare& share,
                                            std::vector<Point3>& velocity,
                                            ContactSolveOutcome& outcome) {
   condensed_velocity = velocity;
   const ContactReport* const report = condensed_solver.solve(
-      stepper.system(), rows.rows(), laws.problem(), shares.condensed, condensed_velocity);
+      stepper.system(), rows.rows(), laws.problem(), share, condensed_velocity);
   if (report == nullptr || report->status != ContactStatus::converged) {
-    shares.soft.take(shares.condensed);
-    shares.condensed.clear(islands.count());
+    shares.soft.take(share);
+    share.clear(islands.count());
     return false;
   }
   velocity = condensed_velocity;
   outcome.residual = std::max(outcome.residual, report->residual.eta);
   outcome.sweeps += report->sweeps;
-  take_impulses(shares.condensed, condensed_solver.impulse(), condensed_solver.contact_velocity());
+  take_impulses(share, condensed_solver.impulse(), condensed_solver.contact_velocity());
   return true;
+}
+
+/// What costs little, first.
+void ContactSystem::State::condense_cheap(BodyStepper& stepper,
+                                          std::vector<Point3>& velocity,
+                                          ContactSolveOutcome& outcome) {
+  has_condensed_in_vain = false;
+  if (shares.soft.is_empty()) return;
+  take_condensed(CondensedSolver::at_first, stepper, shares.condensed);
+  if (shares.condensed.is_empty()) return;
+  has_condensed_in_vain = !solve_condensed(stepper, shares.condensed, velocity, outcome);
 }
 
 /// Where the two-level iteration has failed: by CondensedSolver, if it takes all of its islands.
 bool ContactSystem::State::condense_all(BodyStepper& stepper,
                                         std::vector<Point3>& velocity,
                                         ContactSolveOutcome& outcome) {
-  if (!shares.condensed.is_empty()) return false;
-  take_condensed(CondensedSolver::later, stepper);
-  if (shares.soft.is_empty()) return solve_condensed(stepper, velocity, outcome);
-  shares.soft.take(shares.condensed);
-  shares.condensed.clear(islands.count());
+  if (has_condensed_in_vain) return false;
+  ContactShare all;
+  take_condensed(CondensedSolver::later, stepper, all);
+  if (shares.soft.is_empty()) return solve_condensed(stepper, all, velocity, outcome);
+  shares.soft.take(all);
   return false;
 }
 
@@ -260,10 +281,7 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   outcome.islands = s.islands.contact_island_count();
   const std::vector<Point3>& last_change =
       change != nullptr && change->size() == velocity.size() ? *change : none;
-  if (!is_on_device && !s.shares.soft.is_empty()) {
-    s.take_condensed(CondensedSolver::at_first, stepper);
-    if (!s.shares.condensed.is_empty()) s.solve_condensed(stepper, velocity, outcome);
-  }
+  if (!is_on_device) s.condense_cheap(stepper, velocity, outcome);
   s.solve_soft(stepper, state, last_change, velocity, outcome);
   s.solve_other(stepper, velocity, outcome);
   s.is_resident = s.shares.condensed.is_empty() &&

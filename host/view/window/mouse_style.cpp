@@ -10,7 +10,7 @@ namespace tetwarp::view {
 vtkStandardNewMacro(MouseStyle);
 
 void MouseStyle::OnLeftButtonDown() {
-  if (tints_ || turns_) return;
+  if (tints_ || turns_ || GetState() != VTKIS_NONE) return;
   vtkRenderWindowInteractor* const events = GetInteractor();
   const int* const place = events->GetEventPosition();
   const bool may_grab = events->GetShiftKey() == 0 && events->GetControlKey() == 0;
@@ -28,7 +28,7 @@ void MouseStyle::OnLeftButtonUp() {
 }
 
 void MouseStyle::OnRightButtonDown() {
-  if (grabs_ || edits_) return;
+  if (grabs_ || edits_ || GetState() != VTKIS_NONE) return;
   const int* const place = GetInteractor()->GetEventPosition();
   tints_ = actions_.take_point(place[0], place[1], true);
   turns_ = !tints_ && actions_.turn_window(0, 0);

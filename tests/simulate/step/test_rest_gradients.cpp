@@ -88,7 +88,8 @@ TEST(RestGradients, SolveTiedBodiesInFewIterations) {
   }
 }
 
-/// v^T A v of tied bodies is at most that of their matrices at rest, and at least some of it.
+/// v^T A v of tied bodies is at most that of their matrices at rest. Where springs are soft it is
+/// nearly that.
 TEST(RestFactors, BoundTheMatrixOfTiedBodies) {
   constexpr double time_step = 0.01;
   for (const double spring : {1.0, 1e3, 1e6}) {
@@ -118,7 +119,7 @@ TEST(RestFactors, BoundTheMatrixOfTiedBodies) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(factor.transpose() * inverse *
                                                                factor);
     EXPECT_LE(eigen.eigenvalues().maxCoeff(), 1 + 1e-3);
-    EXPECT_GT(eigen.eigenvalues().minCoeff(), 0);
+    EXPECT_GT(eigen.eigenvalues().minCoeff(), spring == 1 ? 0.99 : 0);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "host/base/index_of.hpp"
@@ -16,8 +17,11 @@ namespace {
 // The way to the solution, squared in the norm of A, is at least the sum of those of all steps.
 // Iterations end where the last few were at most this part of it.
 constexpr double least_gain = 0.04;
+// No iterations where the defect in the norm of M^-1 is at most this part of the tolerance, as
+// after steps of Newton's method: A^-1 is hardly more than a million times M^-1.
+constexpr double least_share = 1e-4;
 constexpr std::ptrdiff_t few = 4;
-constexpr int most_iterations = 1000;
+constexpr int most_iterations = 1000, asked_after = 10;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -52,9 +56,11 @@ void ResidualCheck::find_lower(std::size_t contact) {
   lower_[contact].tangent_metric *= factor;
 }
 
-/// One run of the step gives A p and M^-1 A p.
-void ResidualCheck::find_consistent(const std::vector<double>& x,
-                                    const std::vector<double>& stepped) {
+/// One run of the step gives A p and M^-1 A p. @returns whether the velocities are found
+bool ResidualCheck::find_consistent(const std::vector<double>& x,
+                                    const std::vector<double>& stepped,
+                                    double negligible,
+                                    const std::function<bool()>& goes_on) {
   const std::size_t size = x.size();
   solution_ = x;
   defect_ = step_.defect();
@@ -65,10 +71,12 @@ void ResidualCheck::find_consistent(const std::vector<double>& x,
   image_.resize(stepped.size());
   gains_.clear();
   double square = dot(defect_, preconditioned_), moved = 0;
-  for (int k = 0; k < most_iterations && square > 0; ++k) {
+  for (int k = 0; k < most_iterations; ++k) {
+    if (square <= negligible) return true;
+    if (k % asked_after == asked_after - 1 && !goes_on()) return false;
     step_.run(direction_, zeros_, image_);
     const double curvature = -dot(direction_, step_.defect());
-    if (!(curvature > 0)) break;
+    if (!(curvature > 0)) return false;
     const double length = square / curvature;
     for (std::size_t i = 0; i < size; ++i) {
       solution_[i] += length * direction_[i];
@@ -80,7 +88,7 @@ void ResidualCheck::find_consistent(const std::vector<double>& x,
     const std::ptrdiff_t last = std::min(few, std::ssize(gains_));
     if (last == few &&
         std::accumulate(gains_.end() - last, gains_.end(), 0.0) <= least_gain * moved) {
-      break;
+      return true;
     }
     const double next = dot(defect_, preconditioned_), turn = next / square;
     square = next;
@@ -88,6 +96,7 @@ void ResidualCheck::find_consistent(const std::vector<double>& x,
       direction_[i] = preconditioned_[i] + turn * direction_[i];
     }
   }
+  return false;
 }
 
 double ResidualCheck::eta_of(const std::vector<double>& impulse,
@@ -108,8 +117,17 @@ double ResidualCheck::eta_of(const std::vector<double>& impulse,
 double ResidualCheck::run(const std::vector<double>& x,
                           const std::vector<double>& stepped,
                           const std::vector<double>& impulse,
-                          const std::vector<double>& velocity) {
-  find_consistent(x, stepped);
+                          const std::vector<double>& velocity,
+                          double tolerance,
+                          const std::function<bool()>& goes_on) {
+  double work = 0;
+  for (std::size_t i = 0; i < impulse.size(); ++i) {
+    work += impulse[i] * (velocity[i] - (*free_)[i]);
+  }
+  const double negligible = square_of(least_share * tolerance) * std::max(work, 0.0);
+  if (!find_consistent(x, stepped, negligible, goes_on)) {
+    return std::numeric_limits<double>::infinity();
+  }
   velocity_.resize(impulse.size());
   blocks_.velocities_of_rows(solution_.data(), velocity_.data());
   return eta_of(impulse, velocity);

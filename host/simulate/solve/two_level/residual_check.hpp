@@ -1,6 +1,7 @@
 /// @file residual_check.hpp
 /// The residual eta of a two-level iterate, from velocities that its impulses cause.
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
@@ -13,9 +14,9 @@ namespace tetwarp {
 ///
 ///     A v' = b + J^T r
 ///
-/// are found by conjugate gradients with M^-1 as preconditioner, and eta is bounded from above as
-/// by the contact solver (contact_bound.hpp), whose blocks of J A^-1 J^T are those of M^-1 at
-/// least.
+/// are found by conjugate gradients with M^-1 as preconditioner, to a fifth of the way in the norm
+/// of A, and eta is estimated from above as by the contact solver (contact_bound.hpp), whose blocks
+/// of J A^-1 J^T are those of M^-1 at least.
 class ResidualCheck {
  public:
   /// @param blocks, step  kept by the caller
@@ -31,15 +32,22 @@ class ResidualCheck {
   /// @param x        velocities, [rows][3]
   /// @param stepped  x + M^-1 d, d = b + J^T r - A x, after TwoLevelStep::run()
   /// @param velocity u at x, [3 contacts]
-  /// @returns a bound of eta
+  /// @param tolerance  of eta
+  /// @param goes_on    () -> whether to continue; asked every ten iterations
+  /// @returns eta; infinite where the velocities are not found
   double run(const std::vector<double>& x,
              const std::vector<double>& stepped,
              const std::vector<double>& impulse,
-             const std::vector<double>& velocity);
+             const std::vector<double>& velocity,
+             double tolerance,
+             const std::function<bool()>& goes_on);
 
  private:
   void find_lower(std::size_t contact);
-  void find_consistent(const std::vector<double>& x, const std::vector<double>& stepped);
+  bool find_consistent(const std::vector<double>& x,
+                       const std::vector<double>& stepped,
+                       double negligible,
+                       const std::function<bool()>& goes_on);
   double eta_of(const std::vector<double>& impulse, const std::vector<double>& velocity) const;
 
   const TouchingBlocks& blocks_;

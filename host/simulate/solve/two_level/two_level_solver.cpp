@@ -120,9 +120,10 @@ std::optional<CoupledError> TwoLevelSolver::find_error(const CoupledOutcome&) {
   return CoupledError::of(defect, sums.natural, sums.work);
 }
 
-double TwoLevelSolver::excess(const CoupledOutcome&) {
+double TwoLevelSolver::excess(const CoupledOutcome& outcome) {
   if (!check_.is_needed()) return 0;
-  checked_ = check_.run(x_, y_, impulse_, contact_velocity_);
+  checked_ = check_.run(x_, y_, impulse_, contact_velocity_, options_.tolerance,
+                        [&] { return goes_on(outcome.sweeps); });
   return checked_ / options_.tolerance;
 }
 
@@ -177,13 +178,14 @@ CoupledControl::Next TwoLevelSolver::find_by_newton(CoupledOutcome& outcome) {
   CoupledControl control = this->control(false, newton_share * options_.tolerance);
   for (std::int64_t steps = 0; steps <= most_newton; ++steps, ++outcome.outer_iterations) {
     const CoupledError error = *find_error(outcome);
-    const Next next = control.next(error, outcome.sweeps, [] { return 0; });
+    const std::vector<double> defect = step_.defect();
+    const Next next = control.next(error, outcome.sweeps, [&] { return excess(outcome); });
     outcome.residual = control.residual();
     if (control.is_best()) keep(control.residual());
     if (next == Next::converges) return next;
     if (next == Next::fails) break;
     if (!goes_on(outcome.sweeps)) return Next::is_stopped;
-    if (!newton_.step(*system_, step_.defect(), error, x_, impulse_, contact_velocity_)) break;
+    if (!newton_.step(*system_, defect, error, x_, impulse_, contact_velocity_)) break;
   }
   take_best();
   return Next::fails;
@@ -240,7 +242,7 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
       outcome.converged || ((outcome.is_stopped || !is_small()) && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) {
-    outcome.residual = best_.residual;
+    outcome.residual = std::max(best_.residual, checked_);
     take_best();
     blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
   } else if (checked_ > 0) {

@@ -14,8 +14,6 @@ class RowRangeLu {
  public:
   /// Sets the pattern of rows [begin, end). The same as before: nothing is done.
   void set(const SystemRows& rows, std::int64_t begin, std::int64_t end);
-  std::int64_t begin() const { return begin_; }
-  std::int64_t count() const { return count_; }
   /// Blocks off the diagonal of the system.
   std::int64_t blocks() const { return static_cast<std::int64_t>(entries_.size()); }
   /// Multiplications of factor() and of solve().
