@@ -107,8 +107,11 @@ def test_surfaces_come_back(volume, mesh, tmp_path):
     tetwarp.write(tmp_path / "skin.vtkhdf", surface)
 
     assert "points" in repr(surface)
+    read = tetwarp.read(tmp_path / "skin.vtkhdf")
+    assert np.array_equal(read.points, surface.points)
+    assert np.array_equal(read.triangles, surface.triangles)
     with pytest.raises(tetwarp.IoError, match="skin.vtkhdf"):
-        tetwarp.read(tmp_path / "skin.vtkhdf").mesh  # triangles are no mesh to warp by
+        tetwarp.MeshFile(tmp_path / "skin.vtkhdf")  # triangles are no mesh to warp by
 
 
 def test_surfaces_of_other_programs_are_read(tmp_path):
