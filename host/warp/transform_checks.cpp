@@ -75,7 +75,7 @@ void check_label_rule(std::span<const VolumeView> sources, const WarpOptions& op
   if (options.label_rule == LabelRule::linear) return;
   const std::string rule = std::string("label rule: ") + name_of(options.label_rule);
   if (options.filter != Filter::labels) {
-    throw std::invalid_argument(rule + " is for labels; choose the filter labels");
+    throw std::invalid_argument(rule + " is for labels; set the filter to labels");
   }
   if (options.label_rule == LabelRule::volume && options.outside != Outside::background) {
     throw std::invalid_argument(rule +
