@@ -177,8 +177,12 @@ bool ContactSystem::State::condense_all(BodyStepper& stepper,
   if (has_condensed_in_vain) return false;
   ContactShare all;
   take_condensed(CondensedSolver::later, stepper, all);
-  if (shares.soft.is_empty()) return solve_condensed(stepper, all, velocity, outcome);
-  shares.soft.take(all);
+  const bool is_all = shares.soft.is_empty();
+  if (is_all && solve_condensed(stepper, all, velocity, outcome)) {
+    shares.condensed.take(all);
+    return true;
+  }
+  if (!is_all) shares.soft.take(all);
   return false;
 }
 

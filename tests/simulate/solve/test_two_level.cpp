@@ -61,7 +61,10 @@ std::vector<StackStep> run_stack(const HandScene& scene,
     }
     step.residual = residual_of(part.problem(), system.solution().impulse, dofs);
 
-    stepper->set_velocities(step.velocity);
+    system.set_velocities(step.velocity, *stepper);
+    std::vector<Point3> set;
+    stepper->get_velocities(set);
+    EXPECT_EQ(set, step.velocity);
     stepper->move(stack_step, {});
     stepper->get_state(state);
     tracker.end_step(system.solution(), scene.places(state));
