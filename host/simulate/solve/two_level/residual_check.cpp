@@ -76,7 +76,7 @@ bool ResidualCheck::find_consistent(const std::vector<double>& x,
     if (k % asked_after == asked_after - 1 && !goes_on()) return false;
     step_.run(direction_, zeros_, image_);
     const double curvature = -dot(direction_, step_.defect());
-    if (!(curvature > 0)) return false;
+    if (!(curvature > 0)) return std::isfinite(square);  // what is left is rounding
     const double length = square / curvature;
     for (std::size_t i = 0; i < size; ++i) {
       solution_[i] += length * direction_[i];
@@ -99,7 +99,8 @@ bool ResidualCheck::find_consistent(const std::vector<double>& x,
   return false;
 }
 
-double ResidualCheck::eta_of(const std::vector<double>& impulse,
+double ResidualCheck::eta_of(const Limits& limits,
+                             const std::vector<double>& impulse,
                              const std::vector<double>& velocity) const {
   const ContactResidualOp<double> natural{view_of(lower_), switches_, view_of(impulse),
                                           view_of(velocity_), view_of(*free_)};
@@ -111,26 +112,28 @@ double ResidualCheck::eta_of(const std::vector<double>& impulse,
     free += FreeResidualBoundOp{alone}(c);
   }
   if (sums.eta == 0) return 0;
-  return std::sqrt(sums.eta) / (std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0)));
+  const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
+  return std::sqrt(sums.eta) / std::max(scale, limits.least_scale);
 }
 
 double ResidualCheck::run(const std::vector<double>& x,
                           const std::vector<double>& stepped,
                           const std::vector<double>& impulse,
                           const std::vector<double>& velocity,
-                          double tolerance,
+                          const Limits& limits,
                           const std::function<bool()>& goes_on) {
   double work = 0;
   for (std::size_t i = 0; i < impulse.size(); ++i) {
     work += impulse[i] * (velocity[i] - (*free_)[i]);
   }
-  const double negligible = square_of(least_share * tolerance) * std::max(work, 0.0);
+  const double negligible =
+      square_of(least_share * limits.tolerance) * std::max(work, square_of(limits.least_scale));
   if (!find_consistent(x, stepped, negligible, goes_on)) {
     return std::numeric_limits<double>::infinity();
   }
   velocity_.resize(impulse.size());
   blocks_.velocities_of_rows(solution_.data(), velocity_.data());
-  return eta_of(impulse, velocity);
+  return eta_of(limits, impulse, velocity);
 }
 
 }  // namespace tetwarp

@@ -19,6 +19,11 @@ namespace tetwarp {
 /// of J A^-1 J^T are those of M^-1 at least.
 class ResidualCheck {
  public:
+  struct Limits {
+    double tolerance = 0;    ///< of eta
+    double least_scale = 0;  ///< of the energies that eta is relative to, at least [sqrt(J)]
+  };
+
   /// @param blocks, step  kept by the caller
   ResidualCheck(const TouchingBlocks& blocks, TwoLevelStep& step, ContactSwitches switches)
       : blocks_(blocks), step_(step), switches_(switches) {}
@@ -32,14 +37,13 @@ class ResidualCheck {
   /// @param x        velocities, [rows][3]
   /// @param stepped  x + M^-1 d, d = b + J^T r - A x, after TwoLevelStep::run()
   /// @param velocity u at x, [3 contacts]
-  /// @param tolerance  of eta
   /// @param goes_on    () -> whether to continue; asked every ten iterations
   /// @returns eta; infinite where the velocities are not found
   double run(const std::vector<double>& x,
              const std::vector<double>& stepped,
              const std::vector<double>& impulse,
              const std::vector<double>& velocity,
-             double tolerance,
+             const Limits& limits,
              const std::function<bool()>& goes_on);
 
  private:
@@ -48,7 +52,9 @@ class ResidualCheck {
                        const std::vector<double>& stepped,
                        double negligible,
                        const std::function<bool()>& goes_on);
-  double eta_of(const std::vector<double>& impulse, const std::vector<double>& velocity) const;
+  double eta_of(const Limits& limits,
+                const std::vector<double>& impulse,
+                const std::vector<double>& velocity) const;
 
   const TouchingBlocks& blocks_;
   TwoLevelStep& step_;

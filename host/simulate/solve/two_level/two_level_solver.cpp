@@ -122,7 +122,8 @@ std::optional<CoupledError> TwoLevelSolver::find_error(const CoupledOutcome&) {
 
 double TwoLevelSolver::excess(const CoupledOutcome& outcome) {
   if (!check_.is_needed()) return 0;
-  checked_ = check_.run(x_, y_, impulse_, contact_velocity_, options_.tolerance,
+  checked_ = check_.run(x_, y_, impulse_, contact_velocity_,
+                        {options_.tolerance, least_error_ / options_.tolerance},
                         [&] { return goes_on(outcome.sweeps); });
   return checked_ / options_.tolerance;
 }
@@ -242,7 +243,8 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
       outcome.converged || ((outcome.is_stopped || !is_small()) && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) {
-    outcome.residual = std::max(best_.residual, checked_);
+    outcome.residual =
+        std::isfinite(checked_) ? std::max(best_.residual, checked_) : best_.residual;
     take_best();
     blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
   } else if (checked_ > 0) {
