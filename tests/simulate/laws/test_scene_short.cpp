@@ -188,6 +188,23 @@ TEST(ShortScenes, ClothsSwingToTheWallAndOneStaysLonger) {
   EXPECT_GT(bonded[0], 1.5 * bonded[1]);
 }
 
+/// Contacts that touch and hardly push, as where it leaves the wall, have residuals, too.
+TEST(ShortScenes, ClothWithoutAdhesionLeavesTheWall) {
+  Scene scene = shipped("cloth");
+  scene.contact.material.adhesion.reset();
+  Simulator simulator(scene);
+  std::int64_t most = 0;
+  for (int n = 0; n < 260; ++n) {
+    simulator.step();
+    const StepRecord& record = simulator.record();
+    ASSERT_TRUE(record.converged) << n;
+    most = std::max(most, record.contacts);
+    ASSERT_LE(record.contact_residual, 1e-4) << n;
+  }
+  EXPECT_GT(most, 200);
+  EXPECT_LT(simulator.record().contacts, most / 4);
+}
+
 TEST(ShortScenes, SheetSwingsDown) {
   Simulator simulator(shipped("sheet"));
   const double height = simulator.record().bodies[0].center[2];
