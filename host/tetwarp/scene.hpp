@@ -112,7 +112,7 @@ struct SceneOutput {
   std::vector<std::string> fields = {};    ///< velocity, stress, jacobian, contact
 };
 
-/// Another camera than the default one, for pictures and windows that ask for it.
+/// A further camera, which pictures and windows choose by its name.
 struct SceneCamera {
   std::string name = {};
   Camera camera = {};

@@ -107,8 +107,8 @@ SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces& looks) {
 
 namespace {
 /// Shows the whole scene, and where it will be if it falls.
-Camera camera_of_all(const Simulator& simulator, double aspect) {
-  const SceneDrawing drawn = drawing_of(simulator, LookSurfaces(simulator));
+Camera camera_of_all(const Simulator& simulator, const LookSurfaces& looks, double aspect) {
+  const SceneDrawing drawn = drawing_of(simulator, looks);
   std::vector<Point3> points;
   Box box;
   for (const DrawnSurface& surface : drawn.surfaces) {
@@ -136,13 +136,14 @@ Camera camera_named(const Scene& scene, const std::string& name) {
 }  // namespace
 
 Camera chosen_camera(const Simulator& simulator,
+                     const LookSurfaces& looks,
                      const std::optional<std::array<double, 6>>& numbers,
                      const std::string& name,
                      double aspect) {
   if (numbers) return camera_at(*numbers);
   if (!name.empty()) return camera_named(simulator.scene(), name);
   if (simulator.scene().camera) return *simulator.scene().camera;
-  return camera_of_all(simulator, aspect);
+  return camera_of_all(simulator, looks, aspect);
 }
 
 Camera camera_at(const std::array<double, 6>& numbers) {

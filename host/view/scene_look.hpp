@@ -34,10 +34,13 @@ SceneDrawing drawing_of(const Simulator& simulator, const LookSurfaces& looks);
 
 /// The camera of eye and target, or of a name in the scene; without both that of the scene, or one
 /// that shows the whole scene, and where it will be if it falls.
-/// @param name    empty: none
+/// @param looks    of this simulator
+/// @param numbers  eye, target [m]
+/// @param name     empty: none
 /// @param aspect  width over height of the picture
 /// @throws std::invalid_argument  the scene has no camera of this name
 Camera chosen_camera(const Simulator& simulator,
+                     const LookSurfaces& looks,
                      const std::optional<std::array<double, 6>>& numbers,
                      const std::string& name,
                      double aspect);

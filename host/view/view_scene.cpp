@@ -23,7 +23,8 @@ ViewScene view_scene_of(const LiveSimulation& simulation, const ViewOptions& opt
     for (const Point3& x : simulation.looks().positions(b)) bounds.include(x);
   }
   const double aspect = static_cast<double>(options.width) / static_cast<double>(options.height);
-  scene.camera = chosen_camera(simulator, options.camera, options.camera_name, aspect);
+  scene.camera =
+      chosen_camera(simulator, simulation.looks(), options.camera, options.camera_name, aspect);
   render_surfaces({}, {}, {scene.camera, 1, 1});  // throws on a camera that shows nothing
   if (bounds.high[0] >= bounds.low[0]) {
     scene.center = times(0.5, plus(bounds.low, bounds.high));

@@ -19,7 +19,7 @@ class ScratchFile {
   ~ScratchFile();
 
   int descriptor() const { return descriptor_; }
-  /// By which other processes of the user open it while this object lives.
+  /// Other processes of the user can open the file by this path until the destructor has run.
   std::string path() const;
 
  private:

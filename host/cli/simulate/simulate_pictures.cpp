@@ -20,7 +20,7 @@ ScenePictures::ScenePictures(const Simulator& simulator, const SimulateArguments
   options_.height = height;
   const double aspect = static_cast<double>(options_.width) / options_.height;
   const CameraOption& camera = arguments.pictures.camera;
-  options_.camera = view::chosen_camera(simulator, camera.numbers, camera.name, aspect);
+  options_.camera = view::chosen_camera(simulator, looks_, camera.numbers, camera.name, aspect);
   render_surfaces({}, {}, {options_.camera, 1, 1});  // throws on a camera that shows nothing
   if (!arguments.film.empty()) FilmWriter::check_available(arguments.film);
   if (!arguments.pictures.cast.empty()) transfer_of(arguments.pictures, Grid{{1, 1, 1}}, {0, 1});

@@ -307,7 +307,11 @@ const ContactReport* CondensedSolver::solve(const StepSystem& system,
   set_matrix(rows, share);
   if (!is_valid(share.contacts.size())) return nullptr;
   set_problem(rows, laws, share);
-  solution_ = solver_.solve(problem_);
+  try {
+    solution_ = solver_.solve(problem_);
+  } catch (const ContactProblemError&) {  // rounding has made W indefinite
+    return nullptr;
+  }
   std::ranges::fill(force_, 0.0);
   for (std::size_t c = 0; c < share.contacts.size(); ++c) {
     double* const r = solution_.impulse.data() + 3 * c;

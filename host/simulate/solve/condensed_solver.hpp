@@ -16,15 +16,17 @@
 namespace tetwarp {
 
 /// For bodies that springs join and for cloth, where contacts are few and factors of A have few
-/// entries: W = J A^-1 J^T is made by solves, and the contact solver finds r in u = W r + q. It
-/// takes no outer iterations, however stiff springs and bodies are, and its residual is that of A.
+/// entries: the Delassus matrix W = J A^-1 J^T is made by solves, and the contact solver finds r in
+/// u = W r + q, the local form of ContactProblem. It takes no outer iterations, however stiff
+/// springs and bodies are, and its residual is that of A.
 ///
 /// Determinism: serial; what it takes depends on counted multiplications.
 class CondensedSolver {
  public:
   /// Of a contact island.
   struct Limits {
-    std::int64_t contacts, operations;  ///< multiplications of factors and solves
+    std::int64_t contacts;
+    std::int64_t operations;  ///< multiplications of factors and of solves for columns
   };
   /// Where the iteration over bodies would take about as long, and where it has failed.
   static constexpr Limits at_first{100, 30'000'000}, later{400, 400'000'000};
@@ -32,6 +34,7 @@ class CondensedSolver {
   explicit CondensedSolver(const ContactOptions& options);
 
   /// Moves the contact islands that it solves to another share.
+  /// @param rows     J of all contacts
   /// @param laws     of all contacts
   /// @param factors  of elastic bodies: contact islands of bodies that each have one stay, and so
   ///                 do those that have neither friction nor elastic bodies
@@ -43,7 +46,8 @@ class CondensedSolver {
             const RestFactors& factors,
             ContactShare& from,
             ContactShare& to);
-  /// Solves what take() has moved.
+  /// Solves what take() has moved. What does not converge is a status.
+  /// @param system    of the step, in memory of the host
   /// @param laws      of all contacts
   /// @param velocity  out: with contact, [block_count]
   /// @returns null: the system is singular, or so near to it that W is none of contacts

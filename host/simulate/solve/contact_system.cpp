@@ -74,10 +74,10 @@ struct ContactSystem::State {
   GeneralSolver general_solver;
   bool is_resident = false;  ///< all velocities that contacts have changed are on the device
   ContactSolution solution;
-  std::vector<Point3> impulses;         ///< [block_count]
-  std::vector<Point3> velocity_before;  ///< without contact, [block_count]
-  std::vector<Point3> condensed_velocity;
-  bool has_condensed_in_vain = false;  ///< in this solve, what has not converged
+  std::vector<Point3> impulses;            ///< [block_count]
+  std::vector<Point3> velocity_before;     ///< without contact, [block_count]
+  std::vector<Point3> condensed_velocity;  ///< of CondensedSolver, [block_count]
+  bool has_condensing_failed = false;      ///< in this solve, at first
 };
 
 /// Whether the options leave the choice of the method.
@@ -159,22 +159,22 @@ bool ContactSystem::State::solve_condensed(BodyStepper& stepper,
   return true;
 }
 
-/// What costs little, first.
+/// Before the two-level iteration: by CondensedSolver, what costs it little.
 void ContactSystem::State::condense_cheap(BodyStepper& stepper,
                                           std::vector<Point3>& velocity,
                                           ContactSolveOutcome& outcome) {
-  has_condensed_in_vain = false;
+  has_condensing_failed = false;
   if (shares.soft.is_empty()) return;
   take_condensed(CondensedSolver::at_first, stepper, shares.condensed);
   if (shares.condensed.is_empty()) return;
-  has_condensed_in_vain = !solve_condensed(stepper, shares.condensed, velocity, outcome);
+  has_condensing_failed = !solve_condensed(stepper, shares.condensed, velocity, outcome);
 }
 
 /// Where the two-level iteration has failed: by CondensedSolver, if it takes all of its islands.
 bool ContactSystem::State::condense_all(BodyStepper& stepper,
                                         std::vector<Point3>& velocity,
                                         ContactSolveOutcome& outcome) {
-  if (has_condensed_in_vain) return false;
+  if (has_condensing_failed) return false;
   ContactShare all;
   take_condensed(CondensedSolver::later, stepper, all);
   const bool is_all = shares.soft.is_empty();

@@ -34,10 +34,11 @@ class ResidualCheck {
   void set(const CompliantLists& lists, const std::vector<double>& free);
   /// Whether M^-1 may be far below A^-1.
   bool is_needed() const { return is_needed_; }
-  /// @param x        velocities, [rows][3]
-  /// @param stepped  x + M^-1 d, d = b + J^T r - A x, after TwoLevelStep::run()
-  /// @param velocity u at x, [3 contacts]
-  /// @param goes_on    () -> whether to continue; asked every ten iterations
+  /// @param x         velocities, [rows][3] [m/s]
+  /// @param stepped   x + M^-1 d, d = b + J^T r - A x, after TwoLevelStep::run()
+  /// @param impulse   r, [3 contacts] [N s]
+  /// @param velocity  u at x, [3 contacts] [m/s]
+  /// @param goes_on   () -> whether to continue; asked every ten iterations
   /// @returns eta; infinite where the velocities are not found
   double run(const std::vector<double>& x,
              const std::vector<double>& stepped,

@@ -146,7 +146,7 @@ bool TwoLevelSolver::goes_on(std::int64_t sweeps) const {
 }
 
 /// Whether Newton's method follows the iteration now.
-bool TwoLevelSolver::is_newtons_turn(const CoupledOutcome& outcome) {
+bool TwoLevelSolver::is_newton_due(const CoupledOutcome& outcome) {
   const auto is_over = [&] {
     return sweeps_.operations() + outcome.outer_iterations * product_operations_ >= newton_at_;
   };
@@ -158,7 +158,7 @@ bool TwoLevelSolver::is_newtons_turn(const CoupledOutcome& outcome) {
 }
 
 TwoLevelSolver::Next TwoLevelSolver::limit(const CoupledOutcome& outcome) {
-  if (sweeps_.operations() > most_operations || is_newtons_turn(outcome)) return Next::fails;
+  if (sweeps_.operations() > most_operations || is_newton_due(outcome)) return Next::fails;
   return goes_on(outcome.sweeps) ? Next::proceeds : Next::is_stopped;
 }
 

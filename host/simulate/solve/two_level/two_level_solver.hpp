@@ -91,7 +91,7 @@ class TwoLevelSolver {
   void prepare(double damping);
   CoupledControl control(bool ends_early, double tolerance);
   Next find_by_newton(CoupledOutcome& outcome);
-  bool is_newtons_turn(const CoupledOutcome& outcome);
+  bool is_newton_due(const CoupledOutcome& outcome);
   void go_on_by_newton(CoupledOutcome& outcome);
   bool goes_on(std::int64_t sweeps) const;
   void take_best();
