@@ -1,15 +1,11 @@
 # The Python package whose module runs warps of back end cuda on the emulated device, for the tests of
-# arrays in the memory of a device. Its code is position independent, unlike that of other tests.
+# arrays in the memory of a device.
 set(tetwarp_emulated_package ${PROJECT_BINARY_DIR}/emulated_python/tetwarp)
 get_target_property(tetwarp_python_libraries tetwarp_python LINK_LIBRARIES)
 add_library(tetwarp_emulated_python MODULE $<TARGET_OBJECTS:tetwarp_python>
-  tests/emulated/emulated_backend.cpp tests/emulated/emulated_primitives.cpp
-  tests/emulated/emulated_start.cpp)
-target_include_directories(tetwarp_emulated_python PRIVATE
-  ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests/emulator/include)
-target_compile_options(tetwarp_emulated_python PRIVATE -U_FORTIFY_SOURCE -O0)
-target_link_libraries(tetwarp_emulated_python PRIVATE
-  ${tetwarp_python_libraries} tetwarp_openmp Eigen3::Eigen)
+  $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_primitives>
+  $<TARGET_OBJECTS:tetwarp_emulated_start>)
+target_link_libraries(tetwarp_emulated_python PRIVATE ${tetwarp_python_libraries} tetwarp_openmp)
 set_target_properties(tetwarp_emulated_python PROPERTIES
   PREFIX "" OUTPUT_NAME _core LIBRARY_OUTPUT_DIRECTORY ${tetwarp_emulated_package} LINKER_LANGUAGE CXX)
 file(MAKE_DIRECTORY ${tetwarp_emulated_package})

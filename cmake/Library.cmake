@@ -42,8 +42,9 @@ tetwarp_sources(tetwarp host/make
   phantom_orange.cpp phantom_organs.cpp phantom_torso.cpp picture_view.cpp render_surfaces.cpp
   render_volume.cpp surface_picture.cpp surface_soup.cpp transfer.cpp volume_rays.cpp)
 tetwarp_sources(tetwarp host/reference/contact
-  bilateral.cpp contact.cpp dense.cpp enumerate.cpp feasible.cpp gauss_seidel.cpp least_norm.cpp
-  local.cpp)
+  bilateral.cpp contact.cpp dense.cpp enumerate.cpp feasible.cpp gauss_seidel.cpp local.cpp)
+tetwarp_sources(tetwarp host/reference/linear
+  least_norm.cpp polar_rotation.cpp)
 tetwarp_sources(tetwarp host/reference/simulate
   assemble.cpp bodies.cpp body_motion.cpp cloth_body.cpp elements.cpp energy.cpp fem_body.cpp
   forces.cpp image_material.cpp make_system.cpp material_point.cpp motion.cpp

@@ -188,13 +188,15 @@ if(NOT BUILD_SHARED_LIBS)
       $<TARGET_FILE:tetwarp_collision_pairs> 10 500)
     set_tests_properties(collision_ipctk PROPERTIES LABELS unit TIMEOUT 300 SKIP_RETURN_CODE 77)
   endif()
-  tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES
-    tests/simulate/solve/test_contact_large.cpp
-    tests/simulate/solve/test_contact_stress.cpp
-    tests/simulate/laws/test_law_peel.cpp
-    tests/simulate/state/test_simulator_large.cpp
-    tests/simulate/laws/test_touch_energy.cpp)
-  tetwarp_discover(tetwarp_simulate_large_tests long)
+  if(TETWARP_LONG_TESTS)
+    tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES
+      tests/simulate/solve/test_contact_large.cpp
+      tests/simulate/solve/test_contact_stress.cpp
+      tests/simulate/laws/test_law_peel.cpp
+      tests/simulate/state/test_simulator_large.cpp
+      tests/simulate/laws/test_touch_energy.cpp)
+    tetwarp_discover(tetwarp_simulate_large_tests long)
+  endif()
   if(TETWARP_IO)
     tetwarp_add_tests(tetwarp_scene_file_tests UNITY 4
       LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json SOURCES
@@ -214,8 +216,10 @@ if(NOT BUILD_SHARED_LIBS)
     tetwarp_add_tests(tetwarp_short_scene_tests LIBRARIES tetwarp_io SOURCES
       tests/simulate/laws/test_scene_short.cpp)
     tetwarp_discover(tetwarp_short_scene_tests io)
-    tetwarp_add_tests(tetwarp_scene_law_tests LIBRARIES tetwarp_io SOURCES
-      tests/simulate/laws/test_scene_laws.cpp)
-    tetwarp_discover(tetwarp_scene_law_tests long)
+    if(TETWARP_LONG_TESTS)
+      tetwarp_add_tests(tetwarp_scene_law_tests LIBRARIES tetwarp_io SOURCES
+        tests/simulate/laws/test_scene_laws.cpp)
+      tetwarp_discover(tetwarp_scene_law_tests long)
+    endif()
   endif()
 endif()

@@ -31,14 +31,14 @@ target_precompile_headers(tetwarp_support PRIVATE
   <functional> <map> <numeric> <optional> <random> <span> <string> <tetwarp/tetwarp.hpp> <vector>)
 
 # Compile options of all programs. Tests compute little themselves: -O3 would take longer to compile
-# than it saves. The emulated device jumps between stacks, which _FORTIFY_SOURCE forbids.
+# than it saves.
 function(tetwarp_test_target target)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}
     $<$<COMPILE_LANGUAGE:CXX>:${PROJECT_SOURCE_DIR}/tests/emulator/include>)
   target_link_libraries(${target} PRIVATE
     tetwarp ${ARGN} tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
   target_compile_options(${target} PRIVATE
-    -U_FORTIFY_SOURCE $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
+    $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   if(NOT target STREQUAL tetwarp_support)
     target_precompile_headers(${target} REUSE_FROM tetwarp_support)
@@ -169,13 +169,22 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_values.cpp)
   tetwarp_discover(tetwarp_reference_tests reference)
 
-  tetwarp_add_tests(tetwarp_stress_tests SOURCES
-    tests/warp/test_warp_error.cpp
-    tests/warp/test_warp_stress.cpp
-    tests/warp/test_warp_stress_data.cpp
-    tests/warp/test_warp_stress_grids.cpp
-    tests/warp/test_warp_stress_size.cpp)
-  tetwarp_discover(tetwarp_stress_tests long)
+  if(TETWARP_LONG_TESTS)
+    tetwarp_add_tests(tetwarp_stress_tests SOURCES
+      tests/warp/test_warp_error.cpp
+      tests/warp/test_warp_stress.cpp
+      tests/warp/test_warp_stress_data.cpp
+      tests/warp/test_warp_stress_grids.cpp
+      tests/warp/test_warp_stress_size.cpp)
+    tetwarp_discover(tetwarp_stress_tests long)
+    tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
+      tests/contact/test_contact_stress.cpp
+      tests/contact/test_contact_stress_choice.cpp
+      tests/contact/test_contact_stress_invariance.cpp
+      tests/contact/test_contact_stress_stacks.cpp
+      tests/contact/test_contact_stress_truth.cpp)
+    tetwarp_discover(tetwarp_contact_stress_tests long)
+  endif()
 
   # Three files per unit; those that include kernels are last, so that a change of a kernel
   # recompiles few units.
@@ -214,14 +223,6 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_ellipse.cpp tests/contact/test_contact_rolling.cpp
     tests/contact/test_coupled_iteration.cpp)
   tetwarp_discover(tetwarp_contact_tests unit)
-
-  tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
-    tests/contact/test_contact_stress.cpp
-    tests/contact/test_contact_stress_choice.cpp
-    tests/contact/test_contact_stress_invariance.cpp
-    tests/contact/test_contact_stress_stacks.cpp
-    tests/contact/test_contact_stress_truth.cpp)
-  tetwarp_discover(tetwarp_contact_stress_tests long)
 
   # A separate program, because the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
@@ -299,6 +300,9 @@ if(NOT BUILD_SHARED_LIBS)
     add_library(tetwarp_emulated_${part} OBJECT tests/emulated/emulated_${part}.cpp)
     tetwarp_test_target(tetwarp_emulated_${part})
   endforeach()
+  # Also in a module of Python: position independent, unlike the precompiled headers.
+  set_target_properties(tetwarp_emulated_backend tetwarp_emulated_primitives tetwarp_emulated_start
+    PROPERTIES POSITION_INDEPENDENT_CODE ON DISABLE_PRECOMPILE_HEADERS ON)
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_contact>
     $<TARGET_OBJECTS:tetwarp_emulated_primitives> $<TARGET_OBJECTS:tetwarp_emulated_start>
@@ -332,22 +336,24 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_bench_tests unit)
 endif()
 
-# ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks camera cast certify choices contact contact_adhesion
-  contact_analysis contact_arrays contact_problem contact_tracker error loft make map_points mesh names
-  page_lock report resample scene scene_parts simulate surface tetwarp version volume warp warp_operator)
-if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers axes contact_io film io mesh_array mesh_import nifti point_file
-    scene_io surface_reader transfer_file transform_file)
+# ---- every public header compiles alone, without CUDA, where every file does ---------------------
+if(NOT TETWARP_UNITY)
+  set(tetwarp_public_headers backend blocks camera cast certify choices contact contact_adhesion
+    contact_analysis contact_arrays contact_problem contact_tracker error loft make map_points mesh names
+    page_lock report resample scene scene_parts simulate surface tetwarp version volume warp warp_operator)
+  if(TETWARP_IO)
+    list(APPEND tetwarp_public_headers axes contact_io film io mesh_array mesh_import nifti point_file
+      scene_io surface_reader transfer_file transform_file)
+  endif()
+  foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
+    configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
+    list(APPEND tetwarp_header_sources ${PROJECT_BINARY_DIR}/test_headers/${TETWARP_HEADER}.cpp)
+  endforeach()
+  add_library(tetwarp_header_tests OBJECT ${tetwarp_header_sources})
+  target_compile_features(tetwarp_header_tests PRIVATE cxx_std_20)
+  target_include_directories(tetwarp_header_tests PRIVATE host kernels/base io ${PROJECT_BINARY_DIR}/include)
+  target_link_libraries(tetwarp_header_tests PRIVATE tetwarp_options)
 endif()
-foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
-  configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
-  list(APPEND tetwarp_header_sources ${PROJECT_BINARY_DIR}/test_headers/${TETWARP_HEADER}.cpp)
-endforeach()
-add_library(tetwarp_header_tests OBJECT ${tetwarp_header_sources})
-target_compile_features(tetwarp_header_tests PRIVATE cxx_std_20)
-target_include_directories(tetwarp_header_tests PRIVATE host kernels/base io ${PROJECT_BINARY_DIR}/include)
-target_link_libraries(tetwarp_header_tests PRIVATE tetwarp_options)
 
 if(TETWARP_IO)
   include(cmake/FileTests.cmake)

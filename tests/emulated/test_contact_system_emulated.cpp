@@ -91,8 +91,8 @@ TEST(ContactSystemEmulated, SolvesOtherContactsWhereTheBodiesAreStepped) {
   }
 }
 
-TEST(ContactSystemEmulated, BuildsProblemsWhereTheBodiesAreStepped) {
-  const HandScene scene = stack_on_frame(4);
+void expect_course_of_the_cpu(std::int32_t bodies) {
+  const HandScene scene = stack_on_frame(bodies);
   for (const double stiffness : {0.0, 1e7}) {
     ContactTrackerOptions material = materials(0.3, stiffness);
     HandScene bonded = scene;
@@ -101,6 +101,13 @@ TEST(ContactSystemEmulated, BuildsProblemsWhereTheBodiesAreStepped) {
     const Course found = course_of(bonded, Backend::cuda, exact(Backend::cuda), material);
     expect_near_course(found, expected, 1e-7);
   }
+}
+
+TEST(ContactSystemEmulated, BuildsProblemsWhereTheBodiesAreStepped) {
+  expect_course_of_the_cpu(2);
+}
+TEST(LongContactSystemEmulated, BuildsProblemsWhereTheBodiesAreStepped) {
+  expect_course_of_the_cpu(4);
 }
 
 /// Per contact of two bodies 24 numbers cross to the device, 31 where contacts adhere, and 6 back;

@@ -75,7 +75,8 @@ class Block {
              std::size_t shared_bytes,
              const Schedule& schedule,
              const std::function<void()>& kernel) {
-    while (threads_.size() < thread_count) threads_.push_back(std::make_unique<Thread>());
+    while (fibers_.size() < thread_count) fibers_.push_back(std::make_unique<Fiber>());
+    threads_.assign(thread_count, Thread{});
     thread_count_ = thread_count;
     order_ = schedule.order;
     random_.seed(schedule.seed);
@@ -83,8 +84,7 @@ class Block {
     shared_.shrink_to_fit();  // so that the address sanitizer detects an overrun
     fault_ = nullptr;
     for (unsigned t = 0; t < thread_count; ++t) {
-      threads_[t]->state = State::ready;
-      threads_[t]->fiber.start([this, t, &kernel] { run_thread(t, kernel); });
+      fibers_[t]->start([this, t, &kernel] { run_thread(t, kernel); });
     }
     RaceThread::release_own(&begun_);
     for_each_race([this](const RaceThread& thread) { thread.acquire(&begun_); });
@@ -104,17 +104,17 @@ class Block {
   }
   /// Whether all threads have returned.
   bool is_done() const {
-    return std::all_of(threads_.begin(), threads_.begin() + thread_count_,
-                       [](const auto& thread) { return thread->state == State::done; });
+    return std::all_of(threads_.begin(), threads_.end(),
+                       [](const Thread& thread) { return thread.state == State::done; });
   }
   /// Lets the threads continue that wait for the grid.
   void release_grid() {
-    for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;
+    for (unsigned t = 0; t < thread_count_; ++t) threads_[t].state = State::ready;
   }
   /// What all threads have done is before what follows acquire_order() of any block.
   /// @param at  of the grid
   void release_order(void* at) const {
-    if (!barrier_lines().note(threads_[0]->line)) return;
+    if (!barrier_lines().note(threads_[0].line)) return;
     for_each_race([at](const RaceThread& thread) { thread.release(at); });
   }
   void acquire_order(void* at) const {
@@ -137,7 +137,7 @@ class Block {
   /// @param orders  whether it also orders the accesses of these lanes to memory
   unsigned ballot(unsigned mask, bool predicate, int line, bool orders = false) {
     const IgnoredAccesses of_emulation;
-    Thread& self = *threads_[running_];
+    Thread& self = threads_[running_];
     self.predicate = predicate;
     self.source_lane = lane();
     self.orders = orders;
@@ -150,7 +150,7 @@ class Block {
   T shuffle(unsigned mask, T value, unsigned source_lane, int line) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(Value));
     const IgnoredAccesses of_emulation;
-    Thread& self = *threads_[running_];
+    Thread& self = threads_[running_];
     std::memcpy(self.sent.data(), &value, sizeof(T));
     self.source_lane = source_lane;
     self.orders = false;
@@ -164,7 +164,6 @@ class Block {
   using Value = std::array<std::byte, 32>;
 
   struct Thread {
-    Fiber fiber;
     State state = State::ready;
     int line = 0;              ///< source line of the synchronization that it waits in
     unsigned mask = 0;         ///< of the exchange that it waits in
@@ -182,7 +181,7 @@ class Block {
     } catch (...) {
       fault_ = std::current_exception();  // rethrown by run_warp(), on the scheduler's stack
     }
-    threads_[t]->state = State::done;
+    threads_[t].state = State::done;
   }
 
   void run_warp(unsigned first, const std::function<void(unsigned)>& on_resume) {
@@ -191,9 +190,9 @@ class Block {
     do {
       for (const unsigned lane : ordered(lane_count)) {
         running_ = first + lane;
-        if (threads_[running_]->state != State::ready) continue;
+        if (threads_[running_].state != State::ready) continue;
         on_resume(running_);
-        Fiber& fiber = threads_[running_]->fiber;
+        Fiber& fiber = *fibers_[running_];
         if (observer != nullptr) observer->lane_begins(fiber.stack(), Fiber::stack_bytes);
         fiber.resume();
         if (observer != nullptr) observer->lane_ends();
@@ -205,14 +204,14 @@ class Block {
 
   void wait(State state, int line) {
     const IgnoredAccesses of_emulation;
-    Thread& self = *threads_[running_];
+    Thread& self = threads_[running_];
     self.state = state;
     self.line = line;
-    self.fiber.suspend();
+    fibers_[running_]->suspend();
   }
 
   void exchange(unsigned mask, int line) {
-    Thread& self = *threads_[running_];
+    Thread& self = threads_[running_];
     if (!(mask >> lane() & 1)) {
       throw Fault("line " + std::to_string(line) + ": lane " + std::to_string(lane()) +
                   " is outside its own mask");
@@ -235,18 +234,18 @@ class Block {
   /// Completes one of them.
   bool complete_exchange(unsigned first, unsigned lane_count) {
     for (unsigned lane = 0; lane < lane_count; ++lane) {
-      const Thread& waiting = *threads_[first + lane];
+      const Thread& waiting = threads_[first + lane];
       if (waiting.state != State::at_exchange || missing_lane(first, lane) < lane_count) continue;
       const unsigned mask = waiting.mask;
       unsigned ballot = 0;
       for (unsigned l = 0; l < lane_count; ++l) {
-        if (mask >> l & 1) ballot |= unsigned{threads_[first + l]->predicate} << l;
+        if (mask >> l & 1) ballot |= unsigned{threads_[first + l].predicate} << l;
       }
       for (unsigned l = 0; l < lane_count; ++l) {
         if (!(mask >> l & 1)) continue;
-        Thread& member = *threads_[first + l];
+        Thread& member = threads_[first + l];
         member.ballot = ballot;
-        member.received = threads_[first + member.source_lane]->sent;
+        member.received = threads_[first + member.source_lane].sent;
         member.state = State::ready;
       }
       if (waiting.orders && barrier_lines().note(waiting.line)) order_lanes(first, mask);
@@ -257,9 +256,9 @@ class Block {
 
   /// First lane that has not reached the exchange in which `lane` waits; warp_size if none.
   unsigned missing_lane(unsigned first, unsigned lane) const {
-    const Thread& waiting = *threads_[first + lane];
+    const Thread& waiting = threads_[first + lane];
     for (unsigned l = 0; l < warp_size && first + l < thread_count_; ++l) {
-      const Thread& peer = *threads_[first + l];
+      const Thread& peer = threads_[first + l];
       const bool has_arrived = peer.state == State::at_exchange && peer.mask == waiting.mask &&
                                peer.line == waiting.line;
       if (waiting.mask >> l & 1 && !has_arrived) return l;
@@ -270,14 +269,14 @@ class Block {
   template <class Visit>
   void for_each_race(const Visit& visit) const {
     if (!has_thread_sanitizer) return;
-    for (unsigned t = 0; t < thread_count_; ++t) visit(threads_[t]->fiber.race());
+    for (unsigned t = 0; t < thread_count_; ++t) visit(fibers_[t]->race());
   }
   void order_lanes(unsigned first, unsigned mask) {
     if (!has_thread_sanitizer) return;
     char* const at = &of_lanes_[{first, mask}];
     for (const bool is_release : {true, false}) {
       for (unsigned lane = 0; lane < warp_size && first + lane < thread_count_; ++lane) {
-        const RaceThread& race = threads_[first + lane]->fiber.race();
+        const RaceThread& race = fibers_[first + lane]->race();
         if (mask >> lane & 1) is_release ? race.release(at) : race.acquire(at);
       }
     }
@@ -293,9 +292,9 @@ class Block {
   /// @throws Fault if some thread cannot reach it
   State release_barrier() {
     if (is_done()) return State::done;
-    const Thread& first = *threads_[0];
+    const Thread& first = threads_[0];
     for (unsigned t = 0; t < thread_count_; ++t) {
-      const Thread& thread = *threads_[t];
+      const Thread& thread = threads_[t];
       if (thread.state == State::at_exchange) {
         const unsigned lane = t % warp_size;
         const unsigned missing = missing_lane(t - lane, lane);
@@ -312,12 +311,12 @@ class Block {
     if (LaunchObserver::current() != nullptr) LaunchObserver::current()->barrier_passed();
     release_order(&at_barrier_);
     acquire_order(&at_barrier_);
-    for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;
+    for (unsigned t = 0; t < thread_count_; ++t) threads_[t].state = State::ready;
     return State::at_barrier;
   }
 
   std::string where(unsigned t) const {
-    const Thread& thread = *threads_[t];
+    const Thread& thread = threads_[t];
     const std::string name = "thread " + std::to_string(t);
     if (thread.state == State::done) return name + " has left the kernel";
     return name + " waits in line " + std::to_string(thread.line);
@@ -332,7 +331,8 @@ class Block {
     return numbers;
   }
 
-  std::vector<std::unique_ptr<Thread>> threads_;  ///< kept from launch to launch
+  std::vector<std::unique_ptr<Fiber>> fibers_;  ///< of threads; kept from launch to launch
+  std::vector<Thread> threads_;
   unsigned thread_count_ = 0;
   unsigned running_ = 0;
   ThreadOrder order_ = ThreadOrder::forward;

@@ -223,7 +223,9 @@ void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, cons
     blockDim = block;
     gridDim = grid;
     const auto set_thread = [&block](unsigned t) {
-      threadIdx = {t % block.x, t / block.x % block.y, t / (block.x * block.y)};
+      threadIdx = block.y * block.z == 1
+                      ? uint3{t, 0, 0}
+                      : uint3{t % block.x, t / block.x % block.y, t / (block.x * block.y)};
     };
     Schedule own = schedule();
     own.seed += static_cast<unsigned>(b);  // the same for any number of OS threads

@@ -1,8 +1,8 @@
 """Compares warps by displacement fields and transforms with NumPy, SimpleITK and fslpy.
 
-Usage: check_transforms.py COMMAND
+Usage: check_transforms.py COMMAND [EVERY]
 
-Images and fields of all 48 orientations are written here byte by byte, one physical displacement in
+Images and fields of all 48 orientations (of every EVERYth of them) are written here byte by byte, one physical displacement in
 each convention that fields have, and the warped image is computed from the definition. Affine
 transforms are written as ITK's text and MATLAB files; their matrices are computed here. B-splines,
 fields and composites are written as text, and as HDF5 where SimpleITK is installed, warp fields of FSL as
@@ -110,6 +110,11 @@ def orientations():
                 affine[order[axis], axis] = signs[axis] * (1.5, 2.0, 2.5)[axis]
             affine[:3, 3] = (12, -34, 56)
             yield affine
+
+
+def chosen_orientations():
+    """All 48, or every nth where the command line has a second word."""
+    return itertools.islice(orientations(), 0, None, int(sys.argv[2]) if len(sys.argv) > 2 else 1)
 
 
 def displacement(points):
@@ -507,7 +512,7 @@ def main():
     image = random.uniform(0, 100, DIMS).astype(np.float32)
     with tempfile.TemporaryDirectory() as folder:
         run = Command(sys.argv[1], folder)
-        for n, affine in enumerate(orientations()):
+        for n, affine in enumerate(chosen_orientations()):
             coarse = affine.copy()
             coarse[:3, :3] *= 1.3
             coarse[:3, 3] += affine[:3, :3] @ (0.4, 0.9, -0.3)

@@ -38,10 +38,13 @@ ALLOWED = {
     "host/warp/cpu": ["host/warp", "host/base", "host/exec", "kernels/warp", *BASE],
     "host/warp/cuda": [
         "host/warp", "host/base", "kernels/exec", "kernels/warp", "kernels/warp/cuda", *BASE],
-    "host/reference/warp": ["host/base", "host/tetwarp", "kernels/base/tetwarp"],
-    "host/reference/contact": ["host/base", "host/tetwarp", "kernels/base/tetwarp"],
+    "host/reference/linear": [],
+    "host/reference/warp": [
+        "host/reference/linear", "host/base", "host/tetwarp", "kernels/base/tetwarp"],
+    "host/reference/contact": [
+        "host/reference/linear", "host/base", "host/tetwarp", "kernels/base/tetwarp"],
     "host/reference/simulate": [
-        "host/base", "host/scene", "host/scene/checks", "host/tetwarp", "kernels/base/tetwarp"],
+        "host/reference/linear", "host/base", "host/scene", "host/scene/checks", "host/tetwarp", "kernels/base/tetwarp"],
     "host/contact/problem": CONTACT,
     "host/contact/structure": ["host/contact/problem", *CONTACT],
     "host/contact/newton": ["host/contact/problem", *CONTACT],

@@ -65,7 +65,7 @@ scenes::Scene turned_scene(double offset) {
 
 TEST_P(GridPointMasksOption, GivesTheBitsOfPlanesOnEveryScene) {
   std::int64_t rejected = 0, accepted = 0;
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(48)) {
+  for (const scenes::Scene& scene : scenes::adversarial_scenes(28)) {
     const Counts counts = expect_same(scene, with_masks(), without_masks());
     rejected += counts.pairs_rejected;
     accepted += counts.pairs_accepted;
@@ -129,7 +129,7 @@ TEST_P(GridPointMasksOption, GivesTheBitsOfPlanesWithHexahedra) {
 /// Parts of the mesh move, or nothing; each step updates the one before, in one target or in two.
 TEST_P(GridPointMasksOption, GivesTheBitsOfPlanesInSeries) {
   for (const char* name : {"waved", "rotated", "soup"}) {
-    const scenes::Scene scene = scenes::adversarial_scene(name, 40);
+    const scenes::Scene scene = scenes::adversarial_scene(name, 24);
     const std::vector<Volume> sources = {
         scenes::wavy_volume(scene.source_grid, PixelType::float32)};
     Series masks(sources, scene, with_masks()), planes(sources, scene, without_masks());

@@ -5,7 +5,7 @@
 #include "host/reference/contact/bilateral.hpp"
 
 #include "host/reference/contact/dense.hpp"
-#include "host/reference/contact/least_norm.hpp"
+#include "host/reference/linear/least_norm.hpp"
 
 namespace tetwarp::reference {
 

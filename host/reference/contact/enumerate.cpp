@@ -11,7 +11,7 @@
 #include <span>
 
 #include "host/reference/contact/dense.hpp"
-#include "host/reference/contact/least_norm.hpp"
+#include "host/reference/linear/least_norm.hpp"
 
 namespace tetwarp::reference {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/reference/contact/least_norm.hpp"
+#include "host/reference/linear/least_norm.hpp"
 
 namespace tetwarp::reference {
 

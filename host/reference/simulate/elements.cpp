@@ -2,6 +2,8 @@
 /// Strain, stress, force, stiffness and energy of one element.
 #include "host/reference/simulate/elements.hpp"
 
+#include "host/reference/linear/polar_rotation.hpp"
+
 namespace tetwarp::reference {
 namespace {
 
@@ -32,12 +34,6 @@ std::array<double, 2> lame_of(double youngs_modulus, double poissons_ratio) {
       youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio)),
       youngs_modulus / (2 * (1 + poissons_ratio)),
   };
-}
-
-Matrix3d polar_rotation(const Matrix3d& deformation) {
-  const Eigen::JacobiSVD<Matrix3d> svd(deformation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
 }
 
 Matrix34 element_force(const Element& element, const Matrix34& positions) {

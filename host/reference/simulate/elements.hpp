@@ -20,9 +20,6 @@ Element element_of(const std::array<int, 4>& nodes, const Matrix34& rest);
 /// lambda and mu of E and nu.
 std::array<double, 2> lame_of(double youngs_modulus, double poissons_ratio);
 
-/// The proper rotation that maximizes tr(R^T F), by the singular value decomposition.
-Matrix3d polar_rotation(const Matrix3d& deformation);
-
 /// Forces on the nodes, columns; `positions` are those of the nodes now.
 Matrix34 element_force(const Element& element, const Matrix34& positions);
 

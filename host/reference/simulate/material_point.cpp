@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/reference/linear/least_norm.hpp"
+
 namespace tetwarp::reference {
 
 // The point of the corners' plane, line or space nearest to x has weights w with
@@ -16,7 +18,7 @@ NearestPoint nearest_of_simplex(const MatrixXd& corners, const Vector3d& x) {
   NearestPoint result;
   result.weights = VectorXd::Ones(count);
   if (count > 1) {
-    result.weights.tail(count - 1) = edges.colPivHouseholderQr().solve(x - corners.col(0));
+    result.weights.tail(count - 1) = least_norm_solution(edges, x - corners.col(0));
     result.weights(0) = 1 - result.weights.tail(count - 1).sum();
   }
   if (count == 1 || result.weights.minCoeff() >= 0) {

@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "host/reference/linear/least_norm.hpp"
+
 namespace tetwarp::reference {
 namespace {
 /// The point of the plane, line or point through some corners that is nearest to x, as weights of
@@ -22,7 +24,7 @@ std::optional<Eigen::Vector3d> stationary_weights(const Eigen::Matrix3d& corners
     span.col(e) = corners.col(used[static_cast<std::size_t>(e) + 1]) - corners.col(used[0]);
   }
   Eigen::VectorXd along = Eigen::VectorXd::Zero(edges);
-  if (edges > 0) along = span.colPivHouseholderQr().solve(x - corners.col(used[0]));
+  if (edges > 0) along = least_norm_solution(span, x - corners.col(used[0]));
   weights(used[0]) = 1 - along.sum();
   for (Eigen::Index e = 0; e < edges; ++e)
     weights(used[static_cast<std::size_t>(e) + 1]) = along(e);

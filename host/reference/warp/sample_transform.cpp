@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/reference/linear/polar_rotation.hpp"
+
 namespace tetwarp::reference {
 namespace {
 /// Edges from the first node as columns [voxel].
@@ -17,15 +19,6 @@ Eigen::Matrix3d edges_of(const Corners& tet) {
     }
   }
   return edges;
-}
-
-/// Nearest proper rotation, by the singular value decomposition.
-Eigen::Matrix3d rotation_of(const Eigen::Matrix3d& a) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d, Eigen::NoQRPreconditioner> svd(
-      a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double turned = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  return svd.matrixU() * Eigen::Vector3d(1, 1, turned < 0 ? -1 : 1).asDiagonal() *
-         svd.matrixV().transpose();
 }
 
 Eigen::Matrix3d tensor_of(const Eigen::VectorXd& d) {
@@ -95,13 +88,13 @@ Eigen::VectorXd reoriented(const Eigen::VectorXd& values,
     case Quantity::components:
       break;
     case Quantity::vector:
-      return rotation_of(forward) * values;
+      return polar_rotation(forward) * values;
     case Quantity::covariant_vector:
       return forward.inverse().transpose() * values;
     case Quantity::contravariant_vector:
       return forward * values;
     case Quantity::tensor: {
-      const Eigen::Matrix3d rotation = rotation_of(forward);
+      const Eigen::Matrix3d rotation = polar_rotation(forward);
       return components_of(rotation * tensor_of(values) * rotation.transpose());
     }
     case Quantity::principal_tensor: {

@@ -1,6 +1,6 @@
 /// @file least_norm.cpp
 /// By a complete orthogonal decomposition.
-#include "host/reference/contact/least_norm.hpp"
+#include "host/reference/linear/least_norm.hpp"
 
 #include <Eigen/QR>
 
