@@ -41,7 +41,7 @@ def run_example(name, folder, *words):
         pytest.skip("no folder examples beside the tests")
     done = subprocess.run(
         [sys.executable, EXAMPLES / f"{name}.py", *words], cwd=folder, text=True, capture_output=True,
-        env=os.environ | {"PYTHONPATH": str(Path(tetwarp.__file__).parents[1])}, check=False,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
