@@ -10,7 +10,7 @@ tetwarp_sources(tetwarp_command host/cli/common
 tetwarp_sources(tetwarp_command host/cli/contact
   cmd_contact.cpp contact_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/job
-  array_checks.cpp fingerprint.cpp job_plan.cpp label_rule_option.cpp memory_plan.cpp
+  array_checks.cpp disk_plan.cpp fingerprint.cpp job_plan.cpp label_rule_option.cpp memory_plan.cpp
   output_files.cpp output_grid.cpp output_writer.cpp provenance.cpp source_scan.cpp step_selection.cpp warnings.cpp
   warp_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/simulate

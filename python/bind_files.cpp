@@ -5,12 +5,16 @@
 #include <nanobind/stl/vector.h>
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <tetwarp/io.hpp>
 #include <tetwarp/scene_io.hpp>
+#include <tetwarp/surface_reader.hpp>
 #include <utility>
 #include <vector>
 
+#include "io/files/extension.hpp"
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
@@ -170,6 +174,11 @@ void write_mesh_file(const std::string& path,
     return true;
   });
 }
+nb::tuple strings_of(std::span<const std::string_view> texts) {
+  nb::list all;
+  for (const std::string_view text : texts) all.append(nb::str(text.data(), text.size()));
+  return nb::tuple(all);
+}
 }  // namespace
 
 void bind_files(nb::module_& module) {
@@ -178,7 +187,12 @@ void bind_files(nb::module_& module) {
       [](const std::string& path) { return name_of(file_call([&] { return kind_of(path); })); },
       nb::arg("path"));
   module.def("has_mesh_extension", &has_mesh_extension, nb::arg("path"));
-  module.def("has_surface_extension", &has_surface_extension, nb::arg("path"));
+  module.def(
+      "is_surface_file",
+      [](const std::string& path) { return file_call([&] { return is_surface_file(path); }); },
+      nb::arg("path"));
+  module.attr("vtkhdf_endings") = strings_of(vtkhdf_endings);
+  module.attr("volume_endings") = strings_of(volume_endings);
   module.def("volume_header", &volume_header, nb::arg("path"));
   module.def("read_volume", &read_one_volume, nb::arg("path"), nb::arg("array"), nb::arg("step"),
              nb::arg("axes"), nb::arg("are_labels"));

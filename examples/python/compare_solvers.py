@@ -13,6 +13,8 @@ import numpy as np
 
 import tetwarp
 
+METHODS = ("auto", "gs", "anderson", "nncg", "newton")
+
 
 def stack(count=10):
     """Boxes of 1 kg on each other: the lowest touches the floor. A contact per pair, u = W r + q."""
@@ -36,15 +38,16 @@ def main():
     if not paths:
         paths = ["stack.hdf5"]
         tetwarp.write(paths[0], stack())
-    for path in paths:
-        problem = tetwarp.read(path)
+    problems = [tetwarp.read(path) for path in paths]
+    for path, problem in zip(paths, problems):
         print(path)
-        for method in ("auto", "gs", "anderson", "nncg", "newton"):
+        for method in METHODS:
             start = time.perf_counter()
             solution = tetwarp.solve_contacts(problem, method=method, tolerance=1e-8)
             seconds = time.perf_counter() - start
             print(f"  {method:8} {solution.status}, eta {solution.report['residual']:.1e}, "
                   f"{solution.report['sweeps']} sweeps, {1e3 * seconds:.2f} ms")
+    return problems
 
 
 if __name__ == "__main__":

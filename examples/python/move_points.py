@@ -31,6 +31,7 @@ def main():
     tetwarp.write("bent.vtkhdf", tetwarp.Surface(points, surface.triangles))
     print(f"a surface of {len(points)} points moved, {np.isnan(points).any(axis=1).sum()} of them "
           "in no cell")
+    return surface.triangles, (surface.points, landmarks), (points, moved)
 
 
 if __name__ == "__main__":

@@ -35,6 +35,7 @@ def main():
         before)
 
     start = time.perf_counter()
+    misfits = []
     nodes, mean, square = rest.copy(), np.zeros_like(rest), np.zeros_like(rest)
     for iteration in range(ITERATIONS):
         operator = tetwarp.WarpOperator(grid, rest, cells, nodes, interpolator="cubic")
@@ -43,14 +44,16 @@ def main():
         mean = 0.8 * mean + 0.2 * gradient  # Adam: steps of about one size for all nodes
         square = 0.95 * square + 0.05 * gradient**2
         nodes = nodes - 0.2 * (1 - iteration / ITERATIONS) * mean / (np.sqrt(square) + 1e-9)
+        misfits.append(np.sqrt(np.mean(misfit**2)))
         if iteration % 20 == 0:
-            print(f"{iteration:3} misfit {np.sqrt(np.mean(misfit**2)):.5f}")
+            print(f"{iteration:3} misfit {misfits[-1]:.5f}")
     seconds = time.perf_counter() - start
 
     error = np.linalg.norm(nodes - rest - motion, axis=1)[inner]
     moved = np.linalg.norm(motion, axis=1)[inner]
     print(f"{inner.sum()} nodes, moved by {moved.mean():.2f} voxels on average, found with an error "
           f"of {error.mean():.4f}, at most {error.max():.4f}, in {seconds:.2f} s")
+    return before, after, operator.forward(before), misfits
 
 
 if __name__ == "__main__":

@@ -34,6 +34,7 @@ def main():
     simulator = tetwarp.Simulator(make_scene())
     image = simulator.volume("orange")
     mesh = simulator.mesh("orange")
+    results = {}
     for step in simulator.run():
         if step % 10:
             continue
@@ -43,8 +44,10 @@ def main():
         x, y, z = low
         around = tetwarp.Grid(tuple(shape), (SPACING, SPACING, SPACING), (x, y, z))
         result = tetwarp.warp(image, *mesh, nodes, reference=around)
+        results[simulator.time] = result
         tetwarp.write(f"orange_{step // 10}.nii.gz", result)
         print(f"{simulator.time:.2f} s, {len(simulator.contacts())} contacts: {result}")
+    return results
 
 
 if __name__ == "__main__":

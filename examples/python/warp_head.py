@@ -27,6 +27,7 @@ def main():
     volume = tetwarp.jacobian_determinant(*mesh, bent, reference=head)
     print(f"local volume {volume.values[volume.mask].min():.2f} to "
           f"{volume.values[volume.mask].max():.2f}")
+    return head, result, volume
 
 
 if __name__ == "__main__":

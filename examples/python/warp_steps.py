@@ -29,12 +29,15 @@ def main():
     before = float(np.sum(head.array, dtype=np.float64))
     # One Warper for all steps: the image and the mesh at rest are prepared once. Density keeps the
     # sum of the samples, as of a tracer or a dose.
+    images = {}
     with tetwarp.Warper(head, *result.mesh, intensity="density", antialias=True) as warper:
         for number, deformed in enumerate(result):
             warped = warper(deformed)
             tetwarp.write(f"warped_{number}.nii.gz", warped)
+            images[f"time {result.times[number]:g}"] = warped.volume
             after = float(np.sum(warped.volume, dtype=np.float64))
             print(f"time {result.times[number]:g}: {warped}, sum {after / before:.4f} of the image")
+    return head, images
 
 
 if __name__ == "__main__":

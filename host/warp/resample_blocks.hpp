@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct PartLimits {
   double source_voxel = 4;           ///< one voxel of the sources that are in memory
   double output_voxel = 4;           ///< the same of outputs
   std::array<std::int64_t, 2> step;  ///< parts begin at multiples of so many rows and slices
+  /// Larger parts of the output are divided while they are more than a step.
+  std::int64_t most_voxels = std::numeric_limits<std::int64_t>::max();
 };
 
 /// Divides an output, halving it along its slices, then its rows, until each part is within the

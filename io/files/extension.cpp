@@ -14,4 +14,17 @@ bool has_extension(const std::string& path, std::string_view end) {
                     [&](char b, char a) { return is_same(a, b); });
 }
 
+bool has_one_of(const std::string& path, std::span<const std::string_view> ends) {
+  return std::ranges::any_of(ends,
+                             [&](const std::string_view end) { return has_extension(path, end); });
+}
+
+std::string listed_endings(std::span<const std::string_view> ends) {
+  std::string text(ends.front());
+  for (std::size_t n = 1; n < ends.size(); ++n) {
+    text.append(n + 1 < ends.size() ? ", " : " or ").append(ends[n]);
+  }
+  return text;
+}
+
 }  // namespace tetwarp

@@ -199,6 +199,10 @@ void NiftiSamples::fail() const {
 void NiftiSamples::read(const Region& region, void* out) {
   const bool is_whole = region == Region{{0, 0, 0}, header_.grid.dims};
   if (header_.is_gzip && !is_whole && !unpacked_) unpack();
+  read_in_order(region, out);
+}
+
+void NiftiSamples::read_in_order(const Region& region, void* out) const {
   std::optional<Source> source;
   if (unpacked_) {
     source.emplace(unpacked_->descriptor());

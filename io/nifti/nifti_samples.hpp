@@ -13,8 +13,8 @@
 namespace tetwarp {
 
 /// One step of a NIfTI file. A plain file is read where the region lies. A gzip file can only be
-/// read from its beginning: a region that is the whole grid is, and before any other the step is
-/// unpacked, once, to a temporary file.
+/// read from its beginning: a region that is the whole grid is, and before any other read() unpacks
+/// the step, once, to a temporary file.
 class NiftiSamples {
  public:
   /// @param axes     axes of the components in the file
@@ -34,6 +34,10 @@ class NiftiSamples {
 
   /// Reads a region of the step. @param out  [k][j][i][component], of header().value_type()
   void read(const Region& region, void* out);
+
+  /// The same without a temporary file. Regions of a gzip file with one component should be whole
+  /// slices and follow each other; before any other region it is unpacked from its beginning.
+  void read_in_order(const Region& region, void* out) const;
 
  private:
   class Source;

@@ -13,6 +13,10 @@
 
 namespace tetwarp {
 
+/// True for surfaces by their name (has_surface_extension()) and for a VTKHDF UnstructuredGrid
+/// without cells of three dimensions. @throws IoError  as kind_of(); when such a grid is damaged
+TETWARP_IO_EXPORT bool is_surface_file(const std::string& path);
+
 /// The triangles of a file and their points at each step: a VTKHDF UnstructuredGrid, or a file of
 /// one state, .stl, .ply, .obj, .vtp, .vtu or .vtk, or Gmsh's .msh. Unlike read_surface() it keeps
 /// triangles that are there twice and points of no triangle: a proof must see them, and numbers of

@@ -38,6 +38,8 @@ struct TransformReadOptions {
   /// Says that a NIfTI image is a warp field of FSL, and what its numbers are.
   std::optional<FslWarp> fsl = {};
   std::string image = {};  ///< file of the image to warp, to whose voxels fields of FSL lead
+  /// As of VolumeReadOptions, for fields of which regions are read.
+  std::string scratch = {};
 };
 
 /// True for what read_transform() reads: names that end in .tfm, .txt or .mat, HDF5 files of ITK,

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <tetwarp/io.hpp>
 #include <utility>
 
@@ -70,7 +72,11 @@ class FieldNumbers {
   }
 
   const Grid& grid() const { return reader_.grid(); }
-  double voxel_bytes() const { return is_single() ? 12 : 12 + 24; }
+  /// What reads displacements that `read` makes of these numbers.
+  FieldReader reader(std::function<void(const Region&, float*)> read) const {
+    return {std::move(read), is_single() ? 12.0 : 12 + 24, reader_.chunk_bytes(),
+            reader_.unpacked_bytes()};
+  }
 
   /// @param numbers  out, of a region, each multiplied by `scale`
   void read(const Region& region, double scale, float* numbers) const {
@@ -103,12 +109,11 @@ TransformParts parts_of(const std::shared_ptr<const FieldNumbers>& numbers,
                         double scale,
                         std::string convention,
                         Change change) {
-  FieldReader reader{[numbers, scale, change](const Region& region, float* displacement) {
-                       numbers->read(region, scale, displacement);
-                       change(region, displacement);
-                     },
-                     numbers->voxel_bytes()};
-  return {{DisplacementField{numbers->grid(), {}}, std::move(convention)}, {std::move(reader)}};
+  const auto read = [numbers, scale, change](const Region& region, float* displacement) {
+    numbers->read(region, scale, displacement);
+    change(region, displacement);
+  };
+  return {{DisplacementField{numbers->grid(), {}}, std::move(convention)}, {numbers->reader(read)}};
 }
 
 /// Positions minus those of their voxels.
@@ -128,15 +133,14 @@ void subtract_places(const Grid& grid, const Region& region, float* positions) {
 }
 }  // namespace
 
-TransformParts open_nifti_field(const std::string& path, const std::optional<Axes>& axes) {
+TransformParts open_nifti_field(const std::string& path, const TransformReadOptions& options) {
   const NiftiFacts facts = read_nifti_facts(path);
-  const FieldConvention convention = convention_of(path, facts, axes);
+  const FieldConvention convention = convention_of(path, facts, options.axes);
   // ITK turns positions and components only of headers with a form.
   const bool has_form = facts.sform_code > 0 || facts.qform_code > 0;
   const Axes turned = has_form ? convention.axes : Axes::ras;
-  VolumeReadOptions options;
-  options.axes = turned;
-  const auto numbers = std::make_shared<const FieldNumbers>(path, "", options);
+  const auto numbers = std::make_shared<const FieldNumbers>(
+      path, "", VolumeReadOptions{.axes = turned, .scratch = options.scratch});
   const std::string said = std::string(convention.holds_positions ? "positions" : "displacements") +
                            " along " +
                            (turned == Axes::lps ? "LPS"
@@ -151,16 +155,18 @@ TransformParts open_nifti_field(const std::string& path, const std::optional<Axe
                   });
 }
 
-TransformParts open_image_field(const std::string& path, const std::optional<Axes>& axes) {
-  const bool is_lps = axes.value_or(Axes::lps) == Axes::lps;
-  return parts_of(std::make_shared<const FieldNumbers>(path, "", VolumeReadOptions{}), 1,
-                  std::string("displacements along ") + (is_lps ? "LPS" : "RAS") +
-                      (axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them"),
-                  [is_lps](const Region& region, float* displacement) {
-                    for (std::int64_t n = 0; is_lps && n < 3 * region.voxel_count(); ++n) {
-                      if (n % 3 < 2) displacement[n] = 0 - displacement[n];
-                    }
-                  });
+TransformParts open_image_field(const std::string& path, const TransformReadOptions& options) {
+  const bool is_lps = options.axes.value_or(Axes::lps) == Axes::lps;
+  return parts_of(
+      std::make_shared<const FieldNumbers>(path, "", VolumeReadOptions{.scratch = options.scratch}),
+      1,
+      std::string("displacements along ") + (is_lps ? "LPS" : "RAS") +
+          (options.axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them"),
+      [is_lps](const Region& region, float* displacement) {
+        for (std::int64_t n = 0; is_lps && n < 3 * region.voxel_count(); ++n) {
+          if (n % 3 < 2) displacement[n] = 0 - displacement[n];
+        }
+      });
 }
 
 TransformParts open_volume_field(const std::string& path) {

@@ -1,7 +1,6 @@
 /// @file field_file.hpp
 /// Displacement fields in NIfTI images, NRRD files, MetaImages and VTKHDF volumes.
 #pragma once
-#include <optional>
 #include <string>
 
 #include <tetwarp/transform_file.hpp>
@@ -9,8 +8,8 @@
 namespace tetwarp {
 
 /// @throws IoError  as open_transform()
-TransformParts open_nifti_field(const std::string& path, const std::optional<Axes>& axes);
-TransformParts open_image_field(const std::string& path, const std::optional<Axes>& axes);
+TransformParts open_nifti_field(const std::string& path, const TransformReadOptions& options);
+TransformParts open_image_field(const std::string& path, const TransformReadOptions& options);
 TransformParts open_volume_field(const std::string& path);
 
 }  // namespace tetwarp

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <tetwarp/io.hpp>
 #include <utility>
@@ -14,6 +16,7 @@
 
 #include "host/base/point3.hpp"
 #include "io/nifti/nifti_fields.hpp"
+#include "io/nifti/nifti_samples.hpp"
 
 namespace tetwarp {
 namespace {
@@ -61,49 +64,63 @@ FslSpace space_of(const std::string& path) {
 /// The three numbers of voxels: along the axis of time, as FSL writes them, or of components.
 class FslNumbers {
  public:
-  FslNumbers(const std::string& path, const NiftiHeader& header) {
-    const bool are_steps = header.steps == 3 && header.components == 1;
-    if (!are_steps && !(header.steps == 1 && header.components == 3)) {
-      throw IoError(path, "",
-                    "has " + std::to_string(header.steps) + " steps of " +
-                        std::to_string(header.components) +
-                        " components, expected the three volumes of a warp field of FSL");
+  FslNumbers(const std::string& path, NiftiHeader header, const std::string& scratch) {
+    const std::string found = "has " + std::to_string(header.steps) + " steps of " +
+                              std::to_string(header.components) + " components";
+    if (header.steps == 1 && header.components == 3) {
+      header.steps = 3;  // which lie in a file as three components do
+      header.components = 1;
     }
-    for (std::int64_t step = 0; step < (are_steps ? 3 : 1); ++step) {
-      readers_.emplace_back(path, "", step);
+    if (header.steps != 3 || header.components != 1) {
+      throw IoError(path, "", found + ", expected the three volumes of a warp field of FSL");
     }
-    const ArrayHeader& array = readers_.front().array();
-    if (array.type != PixelType::float32 && array.type != PixelType::float64) {
-      throw IoError(path, array.name,
-                    std::string("is of ") + name_of(array.type) + ", expected float32 or float64");
+    if (header.value_type() != PixelType::float32 && header.value_type() != PixelType::float64) {
+      throw IoError(
+          path, "",
+          std::string("is of ") + name_of(header.value_type()) + ", expected float32 or float64");
+    }
+    for (std::int64_t axis = 0; axis < 3; ++axis) {
+      axes_.emplace_back(path, header, axis, Axes::ras, scratch);
     }
   }
 
-  const Grid& grid() const { return readers_.front().grid(); }
-  /// Memory of a voxel while it is read: displacements, numbers, and those of a reader.
-  double voxel_bytes() const { return 12 + 24 + 24; }
-
-  std::vector<double> read(const Region& region) const {
-    return readers_.front().array().type == PixelType::float32 ? read_as<float>(region)
-                                                               : read_as<double>(region);
+  /// What reads displacements that `read` makes of these numbers: they and the numbers of one axis
+  /// and of all are in memory.
+  FieldReader reader(std::function<void(const Region&, float*)> read) const {
+    return {std::move(read), 12 + 8 + 24, axes_.front().buffer_bytes(),
+            3 * axes_.front().unpacked_bytes()};
   }
 
- private:
-  template <class T>
-  std::vector<double> read_as(const Region& region) const {
-    const std::size_t stride = readers_.size();
+  std::vector<double> read(const Region& region) {
     std::vector<double> numbers(3 * static_cast<std::size_t>(region.voxel_count()));
-    std::vector<T> samples(numbers.size() / stride);
-    for (std::size_t r = 0; r < stride; ++r) {
-      readers_[r].read(region, samples.data());
-      for (std::size_t n = 0; n < samples.size(); ++n) {
-        numbers[stride * n + r] = static_cast<double>(samples[n]);
-      }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      visit(axis, region, &NiftiSamples::read,
+            [&](std::size_t v, double number) { numbers[3 * v + axis] = number; });
     }
     return numbers;
   }
 
-  std::vector<VolumeReader> readers_;
+  /// Calls take(voxel of the region, number). Regions must be as NiftiSamples::read_in_order()
+  /// wants them.
+  template <class Take>
+  void read_in_order(std::size_t axis, const Region& region, const Take& take) {
+    visit(axis, region, &NiftiSamples::read_in_order, take);
+  }
+
+ private:
+  template <class Read, class Take>
+  void visit(std::size_t axis, const Region& region, Read read, const Take& take) {
+    const bool is_single = axes_[axis].header().value_type() == PixelType::float32;
+    const auto count = static_cast<std::size_t>(region.voxel_count());
+    std::vector<float> singles(is_single ? count : 0);
+    std::vector<double> doubles(is_single ? 0 : count);
+    (axes_[axis].*read)(region, is_single ? static_cast<void*>(singles.data()) : doubles.data());
+    for (std::size_t v = 0; v < count; ++v) {
+      take(v, is_single ? static_cast<double>(singles[v]) : doubles[v]);
+    }
+  }
+
+  std::deque<NiftiSamples> axes_;
 };
 
 /// Calls visit(voxel, its number) for all voxels of a region.
@@ -119,42 +136,45 @@ void for_voxels(const Region& region, const Visit& visit) {
   }
 }
 
-/// Root of the sum of squares about the mean, of three numbers per voxel.
+/// Sum of squares about the mean.
 class Spread {
  public:
-  void add(const Point3& x) {
-    ++count_;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double apart = x[axis] - mean_[axis];
-      mean_[axis] += apart / count_;
-      sum_ += apart * (x[axis] - mean_[axis]);
-    }
+  void add(double x) {
+    const double apart = x - mean_;
+    mean_ += apart / ++count_;
+    sum_ += apart * (x - mean_);
   }
-  double value() const { return std::sqrt(sum_); }
+  double sum() const { return sum_; }
 
  private:
-  double count_ = 0, sum_ = 0;
-  Point3 mean_{0, 0, 0};
+  double count_ = 0, mean_ = 0, sum_ = 0;
 };
 
-/// Displacements spread less than the coordinates of an image, positions as much as these.
-FslWarp kind_of_numbers(const std::string& path, const FslSpace& space, const FslNumbers& numbers) {
+/// Displacements spread less than the coordinates of an image, positions as much as these. Reads
+/// axis by axis, in the order of the file.
+FslWarp kind_of_numbers(const std::string& path, const FslSpace& space, FslNumbers& numbers) {
   const auto& dims = space.grid.dims;
   constexpr std::int64_t most_voxels = 1 << 18;  // in memory
   const std::int64_t slices = std::max<std::int64_t>(1, most_voxels / (dims[0] * dims[1]));
-  Spread as_they_are, without_place;
-  for (std::int64_t k = 0; k < dims[2]; k += slices) {
-    const Region region{{0, 0, k}, {dims[0], dims[1], std::min(k + slices, dims[2])}};
-    const std::vector<double> some = numbers.read(region);
-    for_voxels(region, [&](const Point3& voxel, std::size_t v) {
-      const Point3 x = space.of_voxel(voxel);
-      const Point3 number{some[3 * v], some[3 * v + 1], some[3 * v + 2]};
-      as_they_are.add(number);
-      without_place.add({number[0] - x[0], number[1] - x[1], number[2] - x[2]});
-    });
+  double as_they_are = 0, without_place = 0;  // sums of squares about the mean
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Spread number, rest;
+    for (std::int64_t k = 0; k < dims[2]; k += slices) {
+      const Region region{{0, 0, k}, {dims[0], dims[1], std::min(k + slices, dims[2])}};
+      numbers.read_in_order(axis, region, [&](std::size_t v, double x) {
+        const auto n = static_cast<std::int64_t>(v);
+        const Point3 voxel{static_cast<double>(n % dims[0]),
+                           static_cast<double>(n / dims[0] % dims[1]),
+                           static_cast<double>(k + n / (dims[0] * dims[1]))};
+        number.add(x);
+        rest.add(x - space.of_voxel(voxel)[axis]);
+      });
+    }
+    as_they_are += number.sum();
+    without_place += rest.sum();
   }
-  if (2 * as_they_are.value() < without_place.value()) return FslWarp::relative;
-  if (2 * without_place.value() < as_they_are.value()) return FslWarp::absolute;
+  if (4 * as_they_are < without_place) return FslWarp::relative;
+  if (4 * without_place < as_they_are) return FslWarp::absolute;
   throw IoError(path, "",
                 "its numbers may be displacements or positions: state --fsl relative or --fsl "
                 "absolute");
@@ -187,28 +207,26 @@ TransformParts open_fsl_field(const std::string& path, const TransformReadOption
                       "' of FSL leads; convert it to NIfTI");
   }
   const FslSpace from = space_of(path), to = space_of(options.image);
-  const auto numbers = std::make_shared<const FslNumbers>(path, header);
+  const auto numbers = std::make_shared<FslNumbers>(path, header, options.scratch);
   const FslWarp kind = options.fsl ? *options.fsl : kind_of_numbers(path, from, *numbers);
-  FieldReader reader{[numbers, from, to, kind](const Region& region, float* displacement) {
-                       const std::vector<double> some = numbers->read(region);
-                       for_voxels(region, [&](const Point3& voxel, std::size_t v) {
-                         Point3 x{some[3 * v], some[3 * v + 1], some[3 * v + 2]};
-                         if (kind == FslWarp::relative) x = plus(x, from.of_voxel(voxel));
-                         const Point3 there = to.grid.world_of(to.voxel_of(x));
-                         const Point3 here = from.grid.world_of(voxel);
-                         for (std::size_t axis = 0; axis < 3; ++axis) {
-                           displacement[3 * v + axis] =
-                               static_cast<float>(there[axis] - here[axis]);
-                         }
-                       });
-                     },
-                     numbers->voxel_bytes()};
+  const auto read = [numbers, from, to, kind](const Region& region, float* displacement) {
+    const std::vector<double> some = numbers->read(region);
+    for_voxels(region, [&](const Point3& voxel, std::size_t v) {
+      Point3 x{some[3 * v], some[3 * v + 1], some[3 * v + 2]};
+      if (kind == FslWarp::relative) x = plus(x, from.of_voxel(voxel));
+      const Point3 there = to.grid.world_of(to.voxel_of(x));
+      const Point3 here = from.grid.world_of(voxel);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        displacement[3 * v + axis] = static_cast<float>(there[axis] - here[axis]);
+      }
+    });
+  };
   TransformFile file{DisplacementField{from.grid, {}},
                      std::string(kind == FslWarp::relative ? "displacements" : "positions") +
                          " in scaled voxels of FSL (" + (options.fsl ? "--fsl" : "intent 2006") +
                          ")"};
   file.ends_with_field = true;
-  return {std::move(file), {std::move(reader)}};
+  return {std::move(file), {numbers->reader(read)}};
 }
 
 }  // namespace tetwarp

@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 
-/// One transform of a file.
+/// One transform of a file, whose numbers are finite.
 struct ItkTransform {
   std::string type;                ///< "AffineTransform_double_3_3"
   std::vector<double> parameters;  ///< numbers that ITK optimizes
@@ -20,6 +20,7 @@ struct ItkTransform {
   /// of them from `first` on.
   std::int64_t stored = 0;
   std::function<std::vector<double>(std::int64_t first, std::int64_t count)> read = {};
+  double chunk_bytes = 0;  ///< memory that this takes beside
 };
 
 /// Whether a type is that of a displacement field.

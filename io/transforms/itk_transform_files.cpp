@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -18,17 +19,38 @@
 
 namespace tetwarp {
 namespace {
-std::vector<double> numbers_in(const std::string& path, const std::string& text) {
+/// Throws IoError about the first number that is not finite.
+/// @param key    of the list in the file
+/// @param first  index of the first number in that list
+void check_finite(const std::string& path,
+                  const std::string& key,
+                  const std::vector<double>& numbers,
+                  std::int64_t first = 0) {
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    if (std::isfinite(numbers[n])) continue;
+    const std::int64_t index = first + static_cast<std::int64_t>(n);
+    throw IoError(path, key + "[" + std::to_string(index) + "]",
+                  std::string("is ") + (std::isnan(numbers[n]) ? "not a number" : "infinite") +
+                      ", expected a finite number; write the transform again");
+  }
+}
+
+/// @param key  of the list in the file
+std::vector<double> numbers_in(const std::string& path,
+                               const std::string& key,
+                               const std::string& text) {
   std::vector<double> numbers;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     double number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error != std::errc() || end != word.data() + word.size()) {
-      throw IoError(path, "", "'" + word + "' is no number");
+      throw IoError(path, key + "[" + std::to_string(numbers.size()) + "]",
+                    "'" + word + "' is no number");
     }
     numbers.push_back(number);
   }
+  check_finite(path, key, numbers);
   return numbers;
 }
 
@@ -49,13 +71,22 @@ void set_stored(h5::Dataset dataset, ItkTransform& transform) {
     dataset.fail("is no list of numbers");
   }
   transform.stored = dataset.rows();
+  transform.chunk_bytes = 2 * h5::chunk_bytes(dataset);
   transform.read = [kept = std::make_shared<const h5::Dataset>(std::move(dataset))](
                        std::int64_t first, std::int64_t count) {
     const h5::Silence silence;
     std::vector<double> numbers(static_cast<std::size_t>(count));
     h5::read_block(*kept, H5T_NATIVE_DOUBLE, {&first, 1}, {&count, 1}, numbers.data());
+    check_finite(kept->file, kept->name, numbers, first);
     return numbers;
   };
+}
+
+/// Numbers of a dataset, which are finite.
+std::vector<double> finite_reals(const h5::Dataset& dataset) {
+  std::vector<double> numbers = h5::read_reals(dataset);
+  check_finite(dataset.file, dataset.name, numbers);
+  return numbers;
 }
 }  // namespace
 
@@ -77,10 +108,10 @@ std::vector<ItkTransform> read_itk_text(const std::string& path) {
       const std::size_t end = value.find_last_not_of(" \r") + 1;
       if (begin == std::string::npos) throw IoError(path, "", "names no type of a transform");
       transforms.push_back({value.substr(begin, end - begin), {}, {}});
-    } else if (!transforms.empty() && key == "Parameters") {
-      transforms.back().parameters = numbers_in(path, value);
-    } else if (!transforms.empty() && key == "FixedParameters") {
-      transforms.back().fixed = numbers_in(path, value);
+    } else if (!transforms.empty() && (key == "Parameters" || key == "FixedParameters")) {
+      ItkTransform& last = transforms.back();
+      const std::string place = "Transform " + std::to_string(transforms.size() - 1) + ": " + key;
+      (key == "Parameters" ? last.parameters : last.fixed) = numbers_in(path, place, value);
     }
   }
   return transforms;
@@ -116,6 +147,7 @@ std::vector<ItkTransform> read_itk_matlab(const std::string& path) {
       if (is_single) number = static_cast<double>(narrow);
       at += size;
     }
+    check_finite(path, name, numbers);
     if (name != "fixed") {
       transforms.push_back({name, numbers, {}});
     } else if (!transforms.empty()) {
@@ -144,11 +176,11 @@ std::vector<ItkTransform> read_itk_hdf5(const std::string& path) {
     transform.type = h5::read_text(h5::open_dataset(group, "TransformType"));
     auto parameters = hdf5_dataset(group, "TransformParameters", "TranformParameters");
     const auto fixed = hdf5_dataset(group, "TransformFixedParameters", "TranformFixedParameters");
-    if (fixed) transform.fixed = h5::read_reals(*fixed);
+    if (fixed) transform.fixed = finite_reals(*fixed);
     if (parameters && is_itk_field(transform.type)) {
       set_stored(std::move(*parameters), transform);
     } else if (parameters) {
-      transform.parameters = h5::read_reals(*parameters);
+      transform.parameters = finite_reals(*parameters);
     }
     transforms.push_back(std::move(transform));
   }

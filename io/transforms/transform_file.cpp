@@ -72,11 +72,10 @@ TransformParts open_transform(const std::string& path, const TransformReadOption
   if (!has_transform_name(path)) {
     switch (kind_of(path)) {
       case FileKind::nifti:
-        return is_fsl_field(read_nifti_header(path), options)
-                   ? open_fsl_field(path, options)
-                   : open_nifti_field(path, options.axes);
+        return is_fsl_field(read_nifti_header(path), options) ? open_fsl_field(path, options)
+                                                              : open_nifti_field(path, options);
       case FileKind::image:
-        return open_image_field(path, options.axes);
+        return open_image_field(path, options);
       case FileKind::hdf5:
         break;
       default:

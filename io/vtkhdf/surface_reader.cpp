@@ -12,6 +12,12 @@
 
 namespace tetwarp {
 
+bool is_surface_file(const std::string& path) {
+  if (has_surface_extension(path)) return true;
+  const h5::Silence silence;
+  return kind_of(path) == FileKind::mesh && !MeshFile(path).has_solids(0);
+}
+
 struct SurfaceReader::State {
   std::string path;
   std::optional<MeshFile> file;  ///< of VTKHDF, whose steps are read one by one

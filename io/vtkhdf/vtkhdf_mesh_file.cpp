@@ -232,6 +232,13 @@ void MeshFile::check_displacement(const std::vector<Point3>& displacement) const
   check_finite(displacement_, displacement);
 }
 
+bool MeshFile::has_solids(std::int64_t step) const {
+  return std::ranges::any_of(parts_of(step), [&](const MeshPart& part) {
+    return std::ranges::any_of(read_column(types_, part.first_cell, part.cell_count),
+                               [](std::int64_t type) { return dimension_of(type) == 3; });
+  });
+}
+
 MeshCells MeshFile::read_cells(std::int64_t step, CellChoice choice) const {
   const std::vector<MeshPart> parts = parts_of(step);
   std::int64_t node_count = 0;

@@ -73,6 +73,9 @@ class MeshFile {
   /// What is not read, as paths below /VTKHDF: arrays but the displacement, field data.
   std::vector<std::string> not_read() const;
 
+  /// Whether a step has a cell of three dimensions, also of a kind that is not read.
+  bool has_solids(std::int64_t step) const;
+
   /// Cells of all parts. @throws IoError  when there is none of the choice; of solids also on cells
   /// of
   ///                              three dimensions of another kind

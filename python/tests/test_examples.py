@@ -35,13 +35,13 @@ def test_every_public_name_has_a_docstring():
             assert inspect.getdoc(value), name
 
 
-def run_example(name, folder):
+def run_example(name, folder, *words):
     """What an example prints."""
     if not EXAMPLES.exists():
         pytest.skip("no folder examples beside the tests")
     done = subprocess.run(
-        [sys.executable, EXAMPLES / f"{name}.py"], cwd=folder, text=True, capture_output=True,
-        env=os.environ | {"PYTHONPATH": str(Path(tetwarp.__file__).parents[1])}, check=False,
+        [sys.executable, EXAMPLES / f"{name}.py", *words], cwd=folder, text=True, capture_output=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -85,6 +85,16 @@ def test_nodes_are_registered(tmp_path):
     out = run_example("register_nodes", tmp_path)
 
     assert float(out.split("found with an error of ")[1].split(",")[0]) < 0.005
+
+
+def test_pictures_are_drawn(tmp_path):
+    pytest.importorskip("matplotlib")
+
+    run_example("pictures", tmp_path, "drawn", "warp_head", "move_points")
+
+    names = ["python_move_points.png", "python_warp_head.png"]
+    assert sorted(path.name for path in (tmp_path / "drawn").iterdir()) == names
+    assert [path.name for path in tmp_path.iterdir()] == ["drawn"]
 
 
 def test_the_module_has_stubs():

@@ -101,6 +101,16 @@ def test_meshes_and_their_steps_come_back(hexahedra, volume, tmp_path):
         file.step(3)
 
 
+def test_every_ending_of_a_volume_is_a_format(volume, tmp_path):
+    endings = tetwarp._core.volume_endings
+    for ending in endings:
+        tetwarp.write(tmp_path / f"a{ending}", volume)
+
+    is_hdf5 = [(tmp_path / f"a{end}").read_bytes().startswith(b"\x89HDF") for end in endings]
+    assert is_hdf5 == [end in tetwarp._core.vtkhdf_endings for end in endings]
+    assert set(tetwarp._core.vtkhdf_endings) < set(endings)
+
+
 def test_surfaces_come_back(volume, mesh, tmp_path):
     surface = tetwarp.boundary_surface(*mesh)
 

@@ -74,6 +74,7 @@ def test_images_are_read_by_vtk(tmp_path, lacking):
     ("a.vti", "vtkmodules.vtkIOXML", "vtk"), ("a.dcm", "pydicom", "pydicom")])
 def test_the_package_that_is_missing_is_named(name, module, pip, tmp_path, lacking, monkeypatch):
     monkeypatch.setitem(sys.modules, module, None)
+    (tmp_path / name).touch()
 
     text = f"{name}: this build .*; in Python: python3 -m pip install {pip}$"
     with pytest.raises(tetwarp.IoError, match=text):

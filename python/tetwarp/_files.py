@@ -97,16 +97,6 @@ def read_header(path: Any) -> VolumeHeader:
     return VolumeHeader(**{**header, "grid": grid_from_core(header["grid"])})
 
 
-def _mesh_or_surface(name: str) -> MeshFile | Surface:
-    """A VTKHDF UnstructuredGrid; one of triangles alone is a surface."""
-    try:
-        return MeshFile(name)
-    except _core.IoError as error:
-        if "holds no tetrahedron or hexahedron" not in str(error):
-            raise
-        return Surface(*_core.read_surface(name))
-
-
 def read(
     path: Any, *, array: str = "", step: int = 0, axes: str = "ras", labels: bool = False
 ) -> Any:
@@ -141,13 +131,13 @@ def read(
     name = os.fspath(path)
     if _core.has_mesh_extension(name):
         return MeshFile(name, axes=axes)
-    is_surface = _core.has_surface_extension(name)
+    is_surface = _core.is_surface_file(name)
     try:
         if is_surface:
             return Surface(*_core.read_surface(name))
         kind = _core.kind_of(name)
         if kind == "mesh":
-            return _mesh_or_surface(name)
+            return MeshFile(name)
         if kind == "contact problem":
             return ContactProblem(**_core.read_contact_problem(name))
         samples, grid, read_name, nifti = _core.read_volume(
@@ -239,13 +229,9 @@ def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Sequence[float] | N
     )
 
 
-_VTKHDF = (".vtkhdf", ".hdf", ".h5")
-_IMAGES = (".nii", ".nii.gz", ".nrrd", ".mha", ".mhd", ".mgh", ".mgz", ".vti")
-
-
 def _check_ending(path: str, is_mesh: bool) -> None:
     """Raises ValueError if a name is that of another format."""
-    endings = _VTKHDF if is_mesh else _VTKHDF + _IMAGES
+    endings = _core.vtkhdf_endings if is_mesh else _core.volume_endings
     if not path.lower().endswith(endings):
         kind = "mesh or a surface" if is_mesh else "volume"
         raise ValueError(f"path: {path}: expected a name of a {kind}, which ends in "

@@ -73,7 +73,15 @@ TEST_F(FieldBatch, TakesDefaultsOfMeshesForMeshesAlone) {
              "volume.vtkhdf,mesh.vtkhdf,,two.nii\n");
   for (const char* jobs : {"1", "2"}) {
     made({"warp", "--batch", "jobs.csv", "--jobs", jobs, "--memory", "4G", "--strict", "--device",
-          "0", "--no-skip", "all", "--steps", "3", "--filter", "cubic"});
+          "0", "--no-skip", "all", "--steps", "3", "--filter", "cubic", "--report", "all.json"});
+    const auto reports = nlohmann::json::parse(text_of(scene / "all.json"))["jobs"];
+    for (const auto& report : reports) {
+      const bool is_by_field = report["mesh"] == "field.vtkhdf";
+      EXPECT_EQ(report.contains("defaults_left_out"), is_by_field);
+      if (!is_by_field) continue;
+      EXPECT_EQ(report["defaults_left_out"],
+                (Names{"--steps=3", "--device=0", "--no-skip=all", "--strict"}));
+    }
     for (const char* name : {"one.nii", "two.nii"}) EXPECT_TRUE(fs::remove(scene / name)) << name;
   }
 }

@@ -78,8 +78,29 @@ class FieldMemory : public testing::Test {
     write_itk_field(folder / "field.h5", grid, {vectors.begin(), vectors.end()});
   }
 
-  CommandResult warp(const std::string& field, const Names& more) const {
-    Names words{"warp", "volume.vtkhdf", field, "--threads", "2"};
+  /// image.nii, and a warp field of FSL that shifts it by voxels.
+  void write_fsl_inputs() const {
+    Volume image = read_volume(folder / "volume.vtkhdf", "density");
+    image.grid = scenes::unit_grid(120, 112, 104);
+    write_nifti(folder / "image.nii", image);
+    ArrayHeader header{"values", PixelType::float32, 1, default_nifti_facts(1)};
+    header.nifti->intent_code = 2006;
+    BlockVolumeWriter writer(folder / "fsl.nii.gz", image.grid, {header}, {}, true);
+    std::vector<float> shift(image.samples<float>().size());
+    for (int axis = 0; axis < 3; ++axis) {
+      for (std::size_t n = 0; n < shift.size(); ++n) {
+        shift[n] = static_cast<float>(axis + std::sin(static_cast<double>(n) / 30000));
+      }
+      writer.begin_step(axis);
+      writer.write(0, {{0, 0, 0}, image.grid.dims}, shift.data());
+    }
+    writer.finish();
+  }
+
+  CommandResult warp(const std::string& field,
+                     const Names& more,
+                     const std::string& volume = "volume.vtkhdf") const {
+    Names words{"warp", volume, field, "--threads", "2"};
     words.insert(words.end(), more.begin(), more.end());
     return run_command(folder, words);
   }
@@ -127,6 +148,132 @@ TEST_F(FieldMemory, StatesPartsAndRefusesWhatDoesNotFit) {
       std::string::npos)
       << spline.err;
   EXPECT_FALSE(fs::exists(folder / "a.vtkhdf"));
+}
+
+/// Only parts unpack fields: the dry run counts them, and nothing of them stays.
+TEST_F(FieldMemory, UnpacksFieldsOnlyForParts) {
+  write_fsl_inputs();
+  EXPECT_EQ(run_command(folder, {"export", "field.vtkhdf", "-o", "field.nii.gz"}).exit_code, 0);
+  const auto field_bytes = static_cast<double>(12 * grid.voxel_count());
+  for (const char* field : {"field.nii.gz", "fsl.nii.gz"}) {
+    const Names before = folder.names();
+    const auto planned = [&](const Names& more) {
+      Names words{"-o", "a.vtkhdf", "--dry-run", "--report", "plan.json"};
+      words.insert(words.end(), more.begin(), more.end());
+      const CommandResult result = warp(field, words, "image.nii");
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      const Json plans = Json::parse(text_of(folder / "plan.json"))["plans"];
+      fs::remove(folder / "plan.json");
+      return plans[0]["disk"].get<double>();
+    };
+    EXPECT_EQ(planned({}), 0);
+    EXPECT_EQ(planned({"--memory", limit}), field_bytes);
+    EXPECT_EQ(folder.names(), before);
+    EXPECT_EQ(warp(field, {"-o", "parts.nii", "--memory", limit}, "image.nii").exit_code, 0);
+    // Whole fields need no temporary folder.
+    const CommandResult whole =
+        run_command(folder, {"warp", "image.nii", field, "-o", "whole.nii"},
+                    {.launcher = {"/usr/bin/env", "TMPDIR=/dev/null/none"}});
+    EXPECT_EQ(whole.exit_code, 0) << whole.err;
+    EXPECT_TRUE(text_of(folder / "parts.nii") == text_of(folder / "whole.nii")) << field;
+    EXPECT_TRUE(fs::remove(folder / "parts.nii") && fs::remove(folder / "whole.nii"));
+    EXPECT_EQ(folder.names(), before);
+  }
+}
+
+/// Numbers of a field that are not finite are named.
+TEST_F(FieldMemory, NamesANumberOfItksThatIsNotFinite) {
+  const Grid coarse = scenes::oblique_grid(8, 7, 6);
+  std::vector<float> numbers(static_cast<std::size_t>(3 * coarse.voxel_count()), 0.5F);
+  numbers[701] = std::nanf("");
+  write_itk_field(folder / "bad.h5", coarse, numbers);
+
+  for (const Names& more : {Names{}, {"--memory", "50M"}, {"--memory", "50M", "--dry-run"}}) {
+    Names words{"-o", "a.vtkhdf"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = warp("bad.h5", words);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_NE(
+        result.err.find("bad.h5: /TransformGroup/0/TransformParameters[701]: is not a number"),
+        std::string::npos)
+        << result.err;
+    EXPECT_FALSE(fs::exists(folder / "a.vtkhdf"));
+  }
+}
+
+/// A field in one chunk, which is inflated as a whole.
+TEST_F(FieldMemory, CountsTheChunksOfFields) {
+  const Volume field = read_volume(folder / "field.vtkhdf");
+  const hid_t file = H5Fopen((folder / "field.vtkhdf").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const char* const path = "/VTKHDF/PointData/tetwarp_displacement";
+  const hsize_t dims[] = {104, 112, 120, 3};
+  const hid_t space = H5Screate_simple(4, dims, nullptr);
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(layout, 4, dims);
+  H5Pset_deflate(layout, 1);
+  H5Ldelete(file, path, H5P_DEFAULT);
+  const hid_t data =
+      H5Dcreate2(file, path, H5T_IEEE_F32LE, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+  H5Dwrite(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data.data());
+  H5Dclose(data);
+  H5Pclose(layout);
+  H5Sclose(space);
+  H5Fclose(file);
+
+  const CommandResult low = warp("field.vtkhdf", {"-o", "a.vtkhdf", "--memory", "20M"});
+  const std::string marker = "give at least ";
+  ASSERT_NE(low.err.find(marker), std::string::npos) << low.err;
+  const int least = std::stoi(low.err.substr(low.err.find(marker) + marker.size()));
+  const CommandResult result =
+      warp("field.vtkhdf", {"-o", "a.vtkhdf", "--memory", std::to_string(least) + "M"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_LE(result.peak_memory, 1.02 * least * (1 << 20));
+}
+
+/// A dry run of a series states every step, each as the others: all are read through the same
+/// windows.
+TEST_F(FieldMemory, PlansEveryStepOfASeries) {
+  TemporalVolumeWriter series(folder / "series.vtkhdf");
+  const Volume density = read_volume(folder / "volume.vtkhdf", "density");
+  for (const double time : {0.0, 1.0, 2.0}) series.append(time, {&density});
+  series.finish();
+
+  const CommandResult result = warp(
+      "field.vtkhdf", {"-o", "a.vtkhdf", "--memory", limit, "--dry-run", "--report", "plan.json"},
+      "series.vtkhdf");
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  Json plans = Json::parse(text_of(folder / "plan.json"))["plans"];
+  ASSERT_EQ(plans.size(), 3U);
+  EXPECT_GT(plans[0]["blocks"], 1);
+  for (int step = 0; step < 3; ++step) {
+    EXPECT_EQ(plans[step]["step"], step);
+    plans[step]["step"] = 0;
+    EXPECT_EQ(plans[step], plans[0]);
+  }
+}
+
+/// By a mesh and by a field, with and without --dry-run.
+TEST_F(FieldMemory, RefusesWhatTheDiskHasNoRoomFor) {
+  write_mesh(folder / "mesh.vtkhdf", box_mesh(), shifts({1}), {0});
+  const Names before = folder.names();
+  for (const char* deformation : {"field.vtkhdf", "mesh.vtkhdf"}) {
+    for (const bool is_dry : {false, true}) {
+      Names words{
+          "-o",        "a.nii.gz",       "--memory", "200M",   "--dims", "40000,40000,40000",
+          "--spacing", "0.01,0.01,0.01", "--array",  "density"};
+      if (is_dry) words.emplace_back("--dry-run");
+      const CommandResult result = warp(deformation, words);
+      EXPECT_EQ(result.exit_code, 1) << deformation;
+      EXPECT_TRUE(result.has_one_line_error()) << result.err;
+      EXPECT_NE(result.err.find("a.nii.gz: temporary files beside it take 232.8 TiB of disk"),
+                std::string::npos)
+          << result.err;
+      EXPECT_EQ(folder.names(), before);
+    }
+  }
 }
 }  // namespace
 }  // namespace tetwarp::test

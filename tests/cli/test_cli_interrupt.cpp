@@ -81,6 +81,26 @@ TEST(Interrupt, LeavesNothingOfAnUnpackedImage) {
   EXPECT_EQ(scene.names(), (Names{"large.nii.gz", "mesh.vtkhdf", "volume.vtkhdf"}));
 }
 
+/// While a gzip field is unpacked, and while parts of the output are computed.
+TEST(Interrupt, LeavesNothingOfAnUnpackedField) {
+  const Scene scene;
+  Grid grid = ramp_volume<float>().grid;
+  grid.dims = {160, 150, 140};
+  write_nifti(scene / "field.nii.gz", make_volume(grid, PixelType::float32, 3), Axes::lps);
+  write_nifti(scene / "image.nii", make_volume(grid, PixelType::float32));
+  const Names before = scene.names();
+  const FolderWatch watch(scene);
+  RunningCommand command(scene, {"warp", "image.nii", "field.nii.gz", "-o", "out.nii", "--filter",
+                                 "lanczos", "--memory", "80M", "--threads", "1"});
+  ASSERT_TRUE(watch.sees_new_file());
+
+  const Ending ending = end_by(SIGINT, command);
+
+  EXPECT_EQ(ending.result.exit_code, 130);
+  EXPECT_LT(ending.seconds, max_seconds);
+  EXPECT_EQ(scene.names(), before);
+}
+
 TEST(Interrupt, LeavesOnlyCompleteStepsThatResumeKeeps) {
   const Scene scene;
   write_long_mesh(scene);

@@ -483,15 +483,19 @@ def check_refusals(run, image, affine):
     expect("--axes ras", read_nifti(run.path("out.nii")), expected, 2e-4)
     for text, word in {
         "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n": "does not tell its axes",
-        text_of([("BSplineTransform", [0], [0])]): "expected 18 finite fixed parameters",
-        text_of([("BSplineTransform", [0], grid_in_lps(affine, (4, 4, 4)))]): "expected 192 finite",
+        text_of([("BSplineTransform", [0], [0])]): "expected 18 fixed parameters",
+        text_of([("BSplineTransform", [0], grid_in_lps(affine, (4, 4, 4)))]): "expected 192 parameters",
         text_of([("BSplineTransform", [0] * 24, grid_in_lps(affine, (2, 2, 2)))]): "fewer than 4",
         text_of([("DisplacementFieldTransform", [0], grid_in_lps(affine, (1e9, 2, 2.5)))]): "a size of",
         text_of([("ThinPlateSplineKernelTransform", [0], [0])]): "is no transform of three dimensions",
-        text_of([("AffineTransform", [1, 2], [])]): "expected 12 finite parameters",
+        text_of([("AffineTransform", [1, 2], [])]): "expected 12 parameters",
         text_of([("ScaleTransform", [1, 1, 1], [])] * 2): "write a composite",
         "#Insight Transform File V1.0\nTransform: AffineTransform_double_3_3\nParameters: 1 x\n":
-            "'x' is no number",
+            "Transform 0: Parameters[1]: 'x' is no number",
+        text_of([("CompositeTransform", [], []), ("ScaleTransform", [1, np.nan, 1], [])]):
+            "Transform 1: Parameters[1]: is not a number",
+        text_of([("ScaleTransform", [1, 1, 1], [0, 0, -np.inf])]):
+            "Transform 0: FixedParameters[2]: is infinite",
         "#Insight Transform File V1.0\n": "holds no transform",
     }.items():
         with open(run.path("bad.tfm"), "w", encoding="ascii") as file:
@@ -502,6 +506,12 @@ def check_refusals(run, image, affine):
         with open(run.path("bad.mat"), "wb") as file:
             file.write(data)
         run.refused("warp", "image.nii", "bad.mat", "-o", "out.nii")
+    with open(run.path("bad.mat"), "wb") as file:
+        for name, numbers in ("ScaleTransform_double_3_3", [1, 1, 1]), ("fixed", [0, np.nan, 0]):
+            file.write(struct.pack("<5i", 0, 3, 1, 0, len(name) + 1) + name.encode() + b"\0")
+            file.write(np.array(numbers, float).tobytes())
+    line = run.refused("warp", "image.nii", "bad.mat", "-o", "out.nii")
+    assert "fixed[1]: is not a number" in line, line
     line = run.refused("warp", "image.nii", "field.nii", "-o", "out.nii", "--axes", "ras",
                        "--temporal")
     assert "--temporal is for warps by a mesh" in line, line

@@ -26,11 +26,16 @@ void check_output_folder(const std::string& folder, const std::string& output) {
   }
 }
 
-void check_new_folder(const std::string& folder, const std::string& output) {
+std::string existing_folder(const std::string& folder) {
+  if (folder.empty()) return ".";
   std::error_code error;
   fs::path above = fs::exists(folder, error) ? fs::path(folder) : fs::absolute(folder, error);
   while (!fs::exists(above, error) && above.has_relative_path()) above = above.parent_path();
-  check_output_folder(above.string(), output);
+  return above.string();
+}
+
+void check_new_folder(const std::string& folder, const std::string& output) {
+  check_output_folder(existing_folder(folder), output);
 }
 
 void check_output_file(const std::string& output, const std::vector<std::string>& inputs) {
@@ -48,8 +53,7 @@ void check_output_file(const std::string& output, const std::vector<std::string>
       throw IoError(output, "", "is also an input; name another output");
     }
   }
-  const std::string folder = fs::path(link_target(output)).parent_path().string();
-  check_new_folder(folder.empty() ? "." : folder, output);
+  check_new_folder(fs::path(link_target(output)).parent_path().string(), output);
 }
 
 void check_output_files(const std::vector<std::string>& outputs,
@@ -63,27 +67,14 @@ void check_output_files(const std::vector<std::string>& outputs,
   }
 }
 
-namespace {
-bool has_hdf_extension(const std::string& name) {
-  return has_extension(name, ".vtkhdf") || has_extension(name, ".hdf") ||
-         has_extension(name, ".h5");
-}
-}  // namespace
-
 void check_hdf_name(const std::string& output) {
-  if (!has_hdf_extension(output)) {
-    throw IoError(output, "", "the name of a VTKHDF file ends in .vtkhdf, .hdf or .h5");
-  }
+  if (has_one_of(output, vtkhdf_endings)) return;
+  throw IoError(output, "", "the name of a VTKHDF file ends in " + listed_endings(vtkhdf_endings));
 }
 
 void check_volume_name(const std::string& output) {
-  if (has_nifti_name(output) || has_image_name(output) || has_vtk_image_name(output)) return;
-  if (!has_hdf_extension(output)) {
-    throw IoError(
-        output, "",
-        "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii, .nii.gz, .nrrd, .mha, .mhd, "
-        ".mgh, .mgz or .vti");
-  }
+  if (has_one_of(output, volume_endings)) return;
+  throw IoError(output, "", "the name of a volume ends in " + listed_endings(volume_endings));
 }
 
 namespace {

@@ -17,6 +17,10 @@ void check_output_file(const std::string& output, const std::vector<std::string>
 void check_output_files(const std::vector<std::string>& outputs,
                         const std::vector<std::string>& inputs);
 
+/// A folder, or of one that does not exist the nearest above it that does. @param folder  empty:
+/// "."
+std::string existing_folder(const std::string& folder);
+
 /// Checks that a folder exists and is writable. @param output  named in the message
 void check_output_folder(const std::string& folder, const std::string& output);
 
@@ -27,7 +31,7 @@ void check_new_folder(const std::string& folder, const std::string& output);
 /// Checks that a name ends in .vtkhdf, .hdf or .h5.
 void check_hdf_name(const std::string& output);
 
-/// Checks that a name is that of a volume: one of check_hdf_name(), .nii or .nii.gz.
+/// Checks that a name is that of a volume: one of volume_endings.
 void check_volume_name(const std::string& output);
 
 /// Checks that a file can be opened and is of this kind. @param remedy  the message ends with it

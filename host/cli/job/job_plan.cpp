@@ -16,6 +16,7 @@
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/ranks.hpp"
 #include "host/cli/job/array_checks.hpp"
+#include "host/cli/job/disk_plan.hpp"
 #include "host/cli/job/memory_plan.hpp"
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/provenance.hpp"
@@ -209,6 +210,7 @@ void plan_outputs(VolumePlan& plan,
   plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && plan.steps.size() > 1 &&
                        leaves_time(backend, arguments);
   set_outputs(plan, output, arguments);
+  check_room(plan, arguments);
   const auto is_field = [](const ArrayHeader& array) { return nifti_array(array).is_itk_field; };
   if (has_nifti_name(output.string()) && itk_components(plan.written_grid) == 2 &&
       std::ranges::any_of(arrays_written(plan, arguments), is_field)) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/field_reader.hpp>
 #include <tetwarp/io.hpp>
 #include <tetwarp/warp.hpp>
 
@@ -29,6 +30,7 @@ struct VolumePlan {
   std::string path;
   VolumeReadOptions read;
   std::vector<ArrayHeader> arrays;  ///< to warp, at least one
+  std::vector<FieldReader> fields;  ///< of the links of a transform; empty: a mesh
   std::string active;               ///< VolumeHeader::active
   Grid source_grid;
   Grid output_grid;                  ///< the whole, of which --roi may be a part

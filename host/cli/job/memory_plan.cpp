@@ -17,14 +17,6 @@
 
 namespace tetwarp::cli {
 namespace {
-/// Throws IoError unless the output can be computed in blocks.
-void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
-  const std::string reason = needs_all_at_once(arguments);
-  if (reason.empty()) return;
-  throw IoError(plan.path, "",
-                fmt::format("{}, or give --memory at least {}", reason, limit_text(plan.memory)));
-}
-
 /// Bytes per sample that a filter keeps in addition, at its peak.
 double filter_bytes(Filter filter, PixelType type) {
   if (filter != Filter::bspline) return 0;
@@ -77,6 +69,8 @@ double fixed_memory(const VolumePlan& plan,
   constexpr double thread_bytes = mebibyte / 4;  // stack and heap in use
   // HDF5's cache of chunks per array, and a buffer for converted numbers or for deflate.
   constexpr double cache = mebibyte, buffer = mebibyte;
+  // With a stored chunk, and its buffer before and after it grows during inflation.
+  const auto reader_bytes = [](double chunk) { return cache + buffer + 1.5 * chunk; };
   const auto threads = arguments.warp.threads > 0
                            ? static_cast<double>(arguments.warp.threads)
                            : static_cast<double>(std::thread::hardware_concurrency());
@@ -89,27 +83,14 @@ double fixed_memory(const VolumePlan& plan,
     bytes += 4 * mebibyte * threads + 110 * tets;
   }
   for (const ArrayHeader& array : plan.arrays) {
-    // A stored chunk, and its buffer before and after it grows during inflation.
     const VolumeReader reader(plan.path, array.name, arguments.source_step.value_or(0), plan.read);
-    bytes += cache + buffer + 1.5 * reader.chunk_bytes();
+    bytes += reader_bytes(reader.chunk_bytes());
+  }
+  for (const FieldReader& field : plan.fields) {
+    if (field.read) bytes += reader_bytes(field.chunk_bytes);
   }
   const auto outputs = static_cast<double>(arrays_written(plan, arguments).size());
   return bytes + outputs * cache + (arguments.compress > 0 ? buffer : 0);
-}
-
-double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
-  double bytes = 0;
-  for (const ArrayHeader& array : plan.arrays) {
-    if (blocks == 0) break;
-    const std::int64_t step = arguments.source_step.value_or(0);
-    bytes += VolumeReader(plan.path, array.name, step, plan.read).unpacked_bytes();
-  }
-  const auto steps = plan.is_series ? static_cast<double>(plan.steps.size()) : 1;
-  const double outputs = steps * static_cast<double>(plan.written_grid.voxel_count()) *
-                         voxel_bytes(arrays_written(plan, arguments));
-  if (may_resume_within(plan, arguments)) bytes += outputs;
-  if (!has_nifti_name(plan.outputs.front()) || (blocks <= 1 && !plan.is_series)) return bytes;
-  return bytes + outputs;
 }
 
 std::string limit_text(double bytes) {
@@ -150,6 +131,35 @@ std::string needs_all_at_once(const WarpArguments& arguments) {
   return {};
 }
 
+void refuse(VolumePlan& plan, const WarpArguments& arguments, const std::string& reason) {
+  if (!arguments.dry_run) throw std::invalid_argument(reason);
+  plan.refusal = reason;
+}
+
+double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments) {
+  const double available = resident_memory() + available_memory();
+  const double limit = arguments.memory > 0 ? std::min(arguments.memory, available) : available;
+  if (plan.memory <= limit) return limit;
+  if (arguments.memory == 0) {
+    const auto& dims = plan.written_grid.dims;
+    refuse(plan, arguments,
+           fmt::format("{}: {} x {} x {} output voxels need {} of memory with the source{}, {} are "
+                       "available; use --memory to stream them, {}coarser --dims and --spacing, or "
+                       "fewer arrays",
+                       plan.path, dims[0], dims[1], dims[2], bytes_text(plan.memory),
+                       plan.fields.empty() ? "" : " and the transform", bytes_text(limit),
+                       plan.fields.empty() ? "a smaller --roi, " : ""));
+    return limit;
+  }
+  const std::string reason = needs_all_at_once(arguments);
+  if (!reason.empty()) {
+    throw IoError(plan.path, "",
+                  fmt::format("{}, or give --memory at least {}", reason, limit_text(plan.memory)));
+  }
+  plan.memory_limit = limit;
+  return limit;
+}
+
 bool plan_memory(VolumePlan& plan,
                  const WarpArguments& arguments,
                  const MeshReader& mesh,
@@ -166,28 +176,10 @@ bool plan_memory(VolumePlan& plan,
   const bool keeps_owners = (extends(arguments.warp.outside) || takes_gaussian(arguments.warp)) &&
                             !arguments.extra.contains(owner_output);
   const double samples = source_bytes + output_bytes + (keeps_owners ? 4 * output_voxels : 0);
-  const double resident = resident_memory();
-  const double limit = arguments.memory > 0
-                           ? std::min(arguments.memory, resident + available_memory())
-                           : resident + available_memory();
   plan.memory = samples + fixed_memory(plan, arguments, mesh.header());
   const bool is_exact = arguments.memory > 0 || arguments.dry_run;
   plan.memory += is_exact ? list_memory(plan, arguments, mesh, steps) : 0.01 * samples;
-  if (arguments.memory > 0) {
-    if (plan.memory > limit) {
-      plan.memory_limit = limit;
-      check_blocks(plan, arguments);
-    }
-  } else if (plan.memory > limit) {
-    const std::string refusal = fmt::format(
-        "{}: {} x {} x {} output voxels need {} of memory with the source, {} are available; use "
-        "--memory to stream them, a smaller --roi, coarser --dims and --spacing, or fewer arrays",
-        plan.path, plan.written_grid.dims[0], plan.written_grid.dims[1], plan.written_grid.dims[2],
-        bytes_text(plan.memory), bytes_text(limit));
-    if (!arguments.dry_run) throw std::invalid_argument(refusal);
-    plan.refusal = refusal;
-  }
-  return plan.memory + output_bytes <= limit;
+  return plan.memory + output_bytes <= set_memory_limit(plan, arguments);
 }
 
 }  // namespace tetwarp::cli

@@ -20,9 +20,17 @@ double voxel_bytes(const std::vector<ArrayHeader>& arrays);
 /// The warped arrays of a volume, then the extra outputs.
 std::vector<ArrayHeader> arrays_written(const VolumePlan& plan, const WarpArguments& arguments);
 
-/// Memory of a run without samples and lists of cells [byte]: of the process as it is now, of code
-/// that it loads later, of threads, mesh, caches and buffers of the files.
+/// Memory of a run without samples, displacements and lists of cells [byte]: of the process as it
+/// is now, of code that it loads later, of threads, mesh, caches and buffers of the files.
 double fixed_memory(const VolumePlan& plan, const WarpArguments& arguments, const MeshHeader& mesh);
+
+/// Refuses a job: as `refusal` of its plan with --dry-run, else throws std::invalid_argument.
+void refuse(VolumePlan& plan, const WarpArguments& arguments, const std::string& reason);
+
+/// Sets `memory_limit` of a plan whose `memory` is known. Refuses what does not fit.
+/// @throws IoError  with --memory when it cannot be computed in blocks
+/// @returns memory that the process may take [byte]
+double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments);
 
 /// Sets `memory`, `memory_limit` and, with --dry-run, `refusal` of a plan. Throws
 /// std::invalid_argument, IoError if sources, outputs and extra outputs do not fit in memory; with
@@ -32,12 +40,6 @@ bool plan_memory(VolumePlan& plan,
                  const WarpArguments& arguments,
                  const MeshReader& mesh,
                  const std::vector<std::int64_t>& steps);
-
-/// Space on the disk that temporary files take in addition to the output [byte]: the unpacked
-/// source, steps of a series that can be resumed, and NIfTI outputs that are not written from their
-/// beginning to their end.
-/// @param blocks  of the output; 0: it is computed as a whole
-double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks);
 
 /// The value of --memory that allows so much: "39M".
 std::string limit_text(double bytes);

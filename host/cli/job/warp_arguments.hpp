@@ -52,7 +52,7 @@ struct WarpArguments {
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
   /// How to read the last file if it is a transform.
-  TransformReadOptions transform_options() const { return {axes, fsl, files.front()}; }
+  TransformReadOptions transform_options() const { return {axes, fsl, files.front(), output}; }
   Quantity quantity_of(const std::string& array) const {
     const auto found = quantities.find(array);
     return found == quantities.end() ? Quantity::components : found->second;

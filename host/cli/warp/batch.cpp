@@ -105,7 +105,9 @@ std::string name_of_job(int number) {
 
 /// The report of a job that has not run.
 Json files_of_job(const BatchJob& job, int number) {
-  return {{"job", number}, {"volumes", job.volumes}, {"mesh", job.mesh}, {"output", job.output}};
+  Json files{{"job", number}, {"volumes", job.volumes}, {"mesh", job.mesh}, {"output", job.output}};
+  if (!job.left_out.empty()) files["defaults_left_out"] = job.left_out;
+  return files;
 }
 
 JobResult run_by_kind(const WarpArguments& arguments, const JobContext& context) {

@@ -74,7 +74,8 @@ class JobReader {
       : folder_(std::move(folder)), defaults_(defaults) {}
 
   /// @param is_by_transform  as of that function
-  Words words_of(const Json& job, bool is_by_transform) const {
+  /// @param left_out         out: BatchJob::left_out
+  Words words_of(const Json& job, bool is_by_transform, Words& left_out) const {
     if (!job.is_object()) throw std::invalid_argument("is not a JSON object");
     Words files;
     Words options;
@@ -91,8 +92,11 @@ class JobReader {
       options.insert(options.end(), some.begin(), some.end());
     }
     for (const CLI::Option* option : defaults_.get_options()) {
-      const Words some = words_of_default(*option, job, is_by_transform);
-      options.insert(options.end(), some.begin(), some.end());
+      if (!is_default(*option) || job.contains(option->get_lnames().front())) continue;
+      const bool is_taken = refusal(*option, job, is_by_transform).empty();
+      const Words some = words_of_default(*option);
+      Words& all = is_taken ? options : left_out;
+      all.insert(all.end(), some.begin(), some.end());
     }
     files.insert(files.end(), options.begin(), options.end());
     return files;
@@ -211,10 +215,8 @@ class JobReader {
     return name != "report" && !is_one_of(name, batch_options);
   }
 
-  Words words_of_default(const CLI::Option& option, const Json& job, bool is_by_transform) const {
-    if (!is_default(option)) return {};
+  static Words words_of_default(const CLI::Option& option) {
     const std::string& name = option.get_lnames().front();
-    if (job.contains(name) || !refusal(option, job, is_by_transform).empty()) return {};
     if (option.get_items_expected_max() == 0) return {"--" + name};
     return option_words(name, option.results());
   }
@@ -236,7 +238,7 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
     BatchJob& parsed = jobs.emplace_back();
     reader.name_files(list[j], parsed);
     try {
-      parsed.words = reader.words_of(list[j], are_by_transform[j]);
+      parsed.words = reader.words_of(list[j], are_by_transform[j], parsed.left_out);
       parsed.arguments = parse_warp_arguments(parsed.words);
     } catch (const CLI::ParseError& error) {
       parsed.error = name + one_line(error.what());

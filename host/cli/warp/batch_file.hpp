@@ -12,10 +12,11 @@ namespace tetwarp::cli {
 
 /// One job of a batch file: its arguments, or an error.
 struct BatchJob {
-  std::vector<std::string> volumes;  ///< relative to the batch file; also of a job with an error
-  std::string mesh;                  ///< empty: the job names none
-  std::string output;                ///< empty: the job names none
-  std::vector<std::string> words;    ///< its command line
+  std::vector<std::string> volumes;   ///< relative to the batch file; also of a job with an error
+  std::string mesh;                   ///< empty: the job names none
+  std::string output;                 ///< empty: the job names none
+  std::vector<std::string> words;     ///< its command line
+  std::vector<std::string> left_out;  ///< defaults that it does not take: "--steps=3"
   WarpArguments arguments;
   std::string error;  ///< empty: the arguments are valid
 };

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "host/cli/common/interrupt.hpp"
+#include "host/cli/job/disk_plan.hpp"
 #include "host/cli/job/memory_plan.hpp"
 #include "host/cli/job/source_scan.hpp"
 #include "host/cli/warp/samples.hpp"
@@ -55,6 +56,7 @@ TransformRun::TransformRun(const WarpArguments& arguments,
   plan_.read = source.read;
   plan_.read.scratch = arguments.output;
   plan_.arrays = source.arrays;
+  plan_.fields = parts_.fields;
   plan_.source_grid = source.header.grid;
   plan_.output_grid = plan_.written_grid = *options.output_grid;
   for (const std::int64_t step : source.steps) plan_.steps.push_back({step, 0, step, 0});
@@ -80,23 +82,9 @@ void TransformRun::plan_memory() {
   }
   fixed_bytes_ = fixed_memory(plan_, arguments_, MeshHeader{});
   plan_.memory = fixed_bytes_ + samples + displacements;
-  const double available = resident_memory() + available_memory();
-  const double limit = arguments_.memory > 0 ? std::min(arguments_.memory, available) : available;
-  if (plan_.memory <= limit) return;
-  if (arguments_.memory == 0) {
-    plan_.refusal =
-        fmt::format("{}: takes {} of memory, {} are available; use --memory to stream it",
-                    plan_.path, bytes_text(plan_.memory), bytes_text(limit));
-    if (!arguments_.dry_run) throw std::runtime_error(plan_.refusal);
-    return;
-  }
-  const std::string reason = needs_all_at_once(arguments_);
-  if (!reason.empty()) {
-    throw IoError(
-        plan_.path, "",
-        fmt::format("{}, or give --memory at least {}", reason, limit_text(plan_.memory)));
-  }
-  plan_.memory_limit = limit;
+  set_memory_limit(plan_, arguments_);
+  check_room(plan_, arguments_);
+  if (is_whole()) return;
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // the memory of a part is returned when it is freed
 }
 
@@ -106,9 +94,27 @@ PartLimits TransformRun::limits() const {
   return {plan_.memory_limit - fixed_bytes_, voxel, voxel, {step[1], step[2]}};
 }
 
-ResampleBlocks TransformRun::blocks() const {
+ResampleBlocks TransformRun::blocks(const PartLimits& limits) const {
   return {plan_.source_grid, plan_.output_grid, parts_.file.transform,
-          parts_.fields,     options_.filter,   limits()};
+          parts_.fields,     options_.filter,   limits};
+}
+
+/// Memory of the largest of the smallest parts, or of the whole if that is less [byte].
+double TransformRun::least_part_bytes() const {
+  PartLimits smallest = limits();
+  smallest.bytes = plan_.memory - fixed_bytes_;
+  smallest.most_voxels = 1;
+  ResampleBlocks all = blocks(smallest);
+  double bytes = 0;
+  try {
+    while (all.next()) {
+      stop_if_interrupted();
+      bytes = std::max(bytes, all.bytes());
+    }
+  } catch (const std::invalid_argument&) {
+    return smallest.bytes;
+  }
+  return bytes;
 }
 
 std::optional<ResamplePart> TransformRun::next_part(ResampleBlocks& blocks) const {
@@ -116,21 +122,22 @@ std::optional<ResamplePart> TransformRun::next_part(ResampleBlocks& blocks) cons
     return blocks.next();
   } catch (const std::invalid_argument&) {
     if (blocks.bytes() <= limits().bytes) throw;
+    const double least = least_part_bytes();
     throw std::invalid_argument(fmt::format(
         "{}: --memory is too low: the program takes {}, a part of the output with its source and "
         "fields {} more; give at least {}",
-        plan_.path, bytes_text(fixed_bytes_), bytes_text(blocks.bytes()),
-        limit_text(std::min(fixed_bytes_ + blocks.bytes(), plan_.memory))));
+        plan_.path, bytes_text(fixed_bytes_), bytes_text(least), limit_text(fixed_bytes_ + least)));
   }
 }
 
-StepPlan TransformRun::plan_of(std::int64_t step) {
-  StepPlan plan{.volume = plan_.path, .step = step, .dims = plan_.output_grid.dims};
+StepPlan TransformRun::plan_of_a_step() const {
+  StepPlan plan{.volume = plan_.path, .dims = plan_.output_grid.dims};
   if (is_whole()) {
     plan.memory = plan_.memory;
+    plan.disk = temporary_disk(plan_, arguments_, 0);
     return plan;
   }
-  ResampleBlocks all = blocks();
+  ResampleBlocks all = blocks(limits());
   while (const std::optional<ResamplePart> part = next_part(all)) {
     stop_if_interrupted();
     const std::int64_t window = part->source.region.voxel_count();
@@ -148,7 +155,12 @@ StepPlan TransformRun::plan_of(std::int64_t step) {
 }
 
 void TransformRun::plan(JobResult& result) {
-  for (const std::int64_t step : source_.steps) result.plans.push_back(plan_of(step));
+  // All steps are read through the same windows.
+  StepPlan plan = plan_of_a_step();
+  for (const std::int64_t step : source_.steps) {
+    plan.step = step;
+    result.plans.push_back(plan);
+  }
   result.refusal = plan_.refusal;
 }
 
@@ -198,7 +210,7 @@ void TransformRun::run_parts(std::int64_t step,
   const auto count = static_cast<double>(plan_.arrays.size());
   const auto all = static_cast<double>(plan_.output_grid.voxel_count());
   double done = 0;  // output voxels
-  ResampleBlocks left = blocks();
+  ResampleBlocks left = blocks(limits());
   while (std::optional<ResamplePart> part = next_part(left)) {
     const double share = static_cast<double>(part->output.voxel_count()) / count;
     for (std::size_t a = 0; a < plan_.arrays.size(); ++a) {

@@ -34,7 +34,7 @@ struct TransformSource {
 /// windows of them.
 class TransformRun {
  public:
-  /// Opens the transform and plans the memory.
+  /// Opens the transform and plans memory and disk.
   /// @param arguments, source  kept by the caller
   /// @throws IoError, std::invalid_argument  what open_transform() throws; a job that does not fit
   ///                                         in memory and cannot be computed in parts
@@ -55,9 +55,10 @@ class TransformRun {
   void plan_memory();
   void read_fields();
   PartLimits limits() const;
-  ResampleBlocks blocks() const;
+  ResampleBlocks blocks(const PartLimits& limits) const;
+  double least_part_bytes() const;
   std::optional<ResamplePart> next_part(ResampleBlocks& blocks) const;
-  StepPlan plan_of(std::int64_t step);
+  StepPlan plan_of_a_step() const;
   void run_step(std::int64_t step, OutputWriter& writer, ProgressBar& bar);
   void run_parts(std::int64_t step, OutputWriter& writer, ProgressBar& bar, JobResult& result);
 

@@ -7,6 +7,7 @@
 
 #include "host/base/stopwatch.hpp"
 #include "host/cli/common/interrupt.hpp"
+#include "host/cli/job/disk_plan.hpp"
 #include "host/cli/job/memory_plan.hpp"
 #include "host/cli/job/output_files.hpp"
 #include "host/cli/warp/series_in_parts.hpp"

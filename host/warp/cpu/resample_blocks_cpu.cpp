@@ -201,6 +201,7 @@ std::optional<ResamplePart> ResampleBlocks::next() {
   while (!left_.empty()) {
     const Region region = left_.back();
     left_.pop_back();
+    if (region.voxel_count() > limits_.most_voxels && divide(region)) continue;
     if (std::optional<ResamplePart> part = part_of(region)) return part;
     if (!divide(region)) {
       throw std::invalid_argument("a part of the output exceeds the limit of memory");
