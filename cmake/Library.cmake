@@ -75,11 +75,14 @@ tetwarp_sources(tetwarp host/simulate/run
   fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
   simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
   step_records.cpp tet_energies.cpp turning_moments.cpp)
+tetwarp_sources(tetwarp host/simulate/solve/condensed
+  condensed_choice.cpp condensed_island.cpp condensed_matrix.cpp condensed_solver.cpp
+  system_islands.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
-  condensed_solver.cpp contact_shares.cpp contact_system.cpp deformable_solver.cpp general_solver.cpp)
+  contact_system.cpp deformable_solver.cpp general_solver.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem
-  contact_constants.cpp contact_islands.cpp contact_laws.cpp contact_rows.cpp contact_sides.cpp
-  step_laws.cpp step_problem.cpp step_rows.cpp)
+  block_jacobian.cpp contact_constants.cpp contact_islands.cpp contact_laws.cpp contact_rows.cpp
+  contact_shares.cpp contact_sides.cpp step_laws.cpp step_problem.cpp step_rows.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/two_level
   compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp group_matrices.cpp
   packed_contacts.cpp residual_check.cpp touching_blocks.cpp touching_matrix.cpp touching_newton.cpp
@@ -93,7 +96,7 @@ tetwarp_sources(tetwarp host/simulate/step
   ALONE reference_rows.cpp reference_stepper.cpp)
 tetwarp_sources(tetwarp host/simulate/step/cpu
   block_lu.cpp island_factors.cpp rest_factor.cpp rest_factors.cpp rest_gradients.cpp rest_matrix.cpp row_range_lu.cpp
-  stepper_cpu.cpp vector_stages.cpp ALONE vector_stages_base.cpp)
+  stepper_cpu.cpp system_blocks.cpp vector_stages.cpp ALONE vector_stages_base.cpp)
 tetwarp_sources(tetwarp host/simulate/step/cuda
   stepper_${tetwarp_cuda})
 tetwarp_sources(tetwarp host/simulate/surfaces

@@ -106,11 +106,14 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp
     tests/simulate/stack_scenes.cpp
+    tests/simulate/stack_steps.cpp
+    tests/simulate/solve/test_condensed.cpp
     tests/simulate/solve/test_contact_bonds.cpp
     tests/simulate/solve/test_contact_system.cpp
     tests/simulate/solve/test_contact_system_blocks.cpp
     tests/simulate/solve/test_following_motion.cpp
     tests/simulate/solve/test_proximal_steps.cpp
+    tests/simulate/solve/test_residual_check.cpp
     tests/simulate/solve/test_two_level.cpp
     tests/simulate/solve/test_touch_lists.cpp
     tests/simulate/solve/test_two_level_stages.cpp
@@ -147,6 +150,7 @@ if(NOT BUILD_SHARED_LIBS)
     $<TARGET_OBJECTS:tetwarp_emulated_start>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emulated/test_contact_system_emulated.cpp
+    tests/emulated/test_residual_check_emulated.cpp
     tests/emulated/test_two_level_emulated.cpp
     tests/emulated/test_simulator_emulated.cpp
     tests/emulated/test_surfaces_emulated.cpp
@@ -154,6 +158,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp
     tests/simulate/stack_scenes.cpp
+    tests/simulate/stack_steps.cpp
     tests/simulate/solve/test_contact_cuda.cpp)
   foreach(name scene model body emulated_simulator reference_twin ccd detector surfaces
                pair_contact contact_system touch contact_law)

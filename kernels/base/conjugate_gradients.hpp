@@ -12,6 +12,9 @@
 /// | multiply(i)     | sets q = A p in them; returns p . q of them                          |
 /// | coupled(i)      | the numbers that C couples, at the first of their indices; else none |
 /// | precondition(i) | sets z = C r in these                                                |
+///
+/// A system whose products take more than one stage has overloads of gradient_start(),
+/// gradient_product() and gradient_step() instead of the last three.
 #pragma once
 #include <cstdint>
 
@@ -140,6 +143,23 @@ TETWARP_ANY_EXEC void gradient_product(Exec& exec,
   gradient_sum(exec, System::label(), begin, end, GradientProductOp<System>{system}, curvature);
 }
 
+/// z = p = C r. @param square  out: r . z
+template <class Exec, class System>
+TETWARP_ANY_EXEC void gradient_start(
+    Exec& exec, const System& system, std::int64_t begin, std::int64_t end, PlainSums<1>* square) {
+  gradient_sum(exec, System::label(), begin, end, GradientStartOp<System>{system}, square);
+}
+/// x += step p, r -= step q, z = C r. @param next  out: r . z
+template <class Exec, class System>
+TETWARP_ANY_EXEC void gradient_step(Exec& exec,
+                                    const System& system,
+                                    std::int64_t begin,
+                                    std::int64_t end,
+                                    const double* step,
+                                    PlainSums<1>* next) {
+  gradient_sum(exec, System::label(), begin, end, GradientStepOp<System>{system, step}, next);
+}
+
 /// One iteration on indices [begin, end).
 ///
 /// Determinism: same bits for any number of threads; sums are trees that depend only on the
@@ -155,8 +175,7 @@ struct GradientIteration {
   TETWARP_ANY_EXEC void run(Exec& exec) const {
     gradient_product(exec, system, begin, end, &scalars->curvature);
     gradient_once(exec, System::label(), GradientLengthOp{scalars});
-    gradient_sum(exec, System::label(), begin, end, GradientStepOp<System>{system, &scalars->step},
-                 &scalars->next);
+    gradient_step(exec, system, begin, end, &scalars->step, &scalars->next);
     gradient_once(exec, System::label(), GradientMixOp{scalars, square});
     exec.for_each(System::label(), end - begin,
                   FromIndex<GradientTurnOp<System>>{{system, &scalars->turn}, begin});

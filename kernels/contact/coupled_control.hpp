@@ -56,6 +56,9 @@ class CoupledControl {
   /// The factors of bodies that are bent much are too soft: the iteration then diverges, and is
   /// begun anew with half their compliance, down to this part of it.
   static constexpr double least_damping = 1.0 / 16;
+  /// Of the tolerance, at which convergence is checked where the errors are no measure of it: a
+  /// check takes tens of products with A.
+  static constexpr double check_share = 0.2;
 
   /// omega of the nodes and bodies that A couples to others, in simulations.
   /// @param relaxation  ContactExpertOptions::relaxation

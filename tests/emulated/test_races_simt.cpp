@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/emulated/check_of_step.hpp"
 #include "tests/emulated/gradient_rows.hpp"
 #include "tests/emulated/island_solves.hpp"
 #include "tests/emulated/race_reports.hpp"
@@ -86,6 +87,11 @@ void iterate_by_teams() {
 TEST(Races, ConjugateGradientsHaveNone) {
   iterate_by_teams<double>();
   iterate_by_teams<float>();
+}
+
+TEST(Races, ChecksOfConvergenceHaveNone) {
+  CheckOfStep check(40);
+  EXPECT_GT(check.run(2, 3).progress.iterations, 3);
 }
 
 /// Takes the order from one barrier after the other, by their lines.

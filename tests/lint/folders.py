@@ -76,8 +76,10 @@ ALLOWED = {
     "host/simulate/patches": ["host/simulate/surfaces", *SURFACES],
     "host/simulate/solve/problem": SOLVE,
     "host/simulate/solve/two_level": ["host/simulate/solve/problem", *SOLVE],
+    "host/simulate/solve/condensed": ["host/simulate/solve/problem", *SOLVE],
     "host/simulate/solve": [
-        "host/simulate/solve/problem", "host/simulate/solve/two_level", *SOLVE],
+        "host/simulate/solve/problem", "host/simulate/solve/two_level",
+        "host/simulate/solve/condensed", *SOLVE],
     "host/simulate/step/cuda": [
         "host/simulate/solve/problem", "host/simulate/solve/two_level", "kernels/exec", *SOLVE],
     "host/simulate/contact_step": [

@@ -92,8 +92,7 @@ class CoupledSystem {
     system.z = view_of(memory_.image);
     system.p = view_of(memory_.direction);
     system.q = view_of(memory_.product);
-    gradient_sum(exec_, system.label(), begin, end, GradientStartOp<CoupledGradients>{system},
-                 &steps[0].square);
+    gradient_start(exec_, system, begin, end, &steps[0].square);
     LinearProgress progress;
     error_.start_solve();
     moved_square_ = 0;

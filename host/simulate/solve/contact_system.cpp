@@ -8,11 +8,11 @@
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
-#include "host/simulate/solve/condensed_solver.hpp"
-#include "host/simulate/solve/contact_shares.hpp"
+#include "host/simulate/solve/condensed/condensed_solver.hpp"
 #include "host/simulate/solve/deformable_solver.hpp"
 #include "host/simulate/solve/general_solver.hpp"
 #include "host/simulate/solve/problem/contact_islands.hpp"
+#include "host/simulate/solve/problem/contact_shares.hpp"
 #include "host/simulate/solve/problem/step_laws.hpp"
 #include "host/simulate/solve/problem/step_rows.hpp"
 #include "host/simulate/solve/two_level/resident_two_level.hpp"
@@ -30,7 +30,7 @@ struct ContactSystem::State {
         laws(surfaces, given.recovery_fraction),
         factors(given.factors ? given.factors : std::make_shared<RestFactors>(of)),
         deformable_solver(surfaces, of, given.solver, factors),
-        condensed_solver(given.solver),
+        condensed_solver(given.solver, islands, *factors),
         general_solver(given.solver) {}
 
   void take_impulses(const ContactShare& share,
@@ -134,8 +134,8 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
 void ContactSystem::State::take_condensed(const CondensedSolver::Limits& limits,
                                           BodyStepper& stepper,
                                           ContactShare& share) {
-  condensed_solver.take(limits, stepper.system().rows, islands, rows.rows(), laws.problem(),
-                        *factors, shares.soft, share);
+  condensed_solver.take(limits, stepper.system().rows, rows.rows(), laws.problem(), shares.soft,
+                        share);
 }
 
 /// @returns whether a share of CondensedSolver has converged; else it is given back, and nothing

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "host/simulate/solve/contact_shares.hpp"
+#include "host/simulate/solve/problem/contact_shares.hpp"
 #include "host/simulate/solve/problem/step_rows.hpp"
 #include "host/simulate/solve/two_level/compliant_list_maker.hpp"
 #include "host/simulate/solve/two_level/resident_two_level.hpp"

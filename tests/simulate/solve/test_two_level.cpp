@@ -5,72 +5,11 @@
 #include <cstdint>
 
 #include "host/base/point3.hpp"
-#include "host/simulate/solve/problem/step_problem.hpp"
-#include "host/simulate/solve/problem/step_rows.hpp"
 #include "tests/simulate/body_models.hpp"
-#include "tests/simulate/stack_scenes.hpp"
+#include "tests/simulate/stack_steps.hpp"
 
 namespace tetwarp::test {
 namespace {
-
-struct StackStep {
-  ContactSolveOutcome outcome;
-  ContactResidual residual;  ///< by a factorization of A
-  std::vector<Point3> velocity;
-};
-
-/// Steps of a stack that is pushed sideways.
-std::vector<StackStep> run_stack(const HandScene& scene,
-                                 const ContactSystemOptions& options,
-                                 double adhesion,
-                                 std::vector<Point3>* change,
-                                 double friction = 0.4) {
-  ContactTrackerOptions tracking;
-  tracking.materials[0].friction = friction;
-  tracking.materials[0].stiffness = adhesion;
-  tracking.materials[0].initial_intensity = adhesion > 0 ? 0.5 : 0;
-  tracking.touch_distance = 1e-9;
-  const auto stepper = make_cpu_stepper(scene.model, {.linear_tolerance = 1e-10});
-  ContactSystem system(scene.surfaces, scene.model, options);
-  ContactTracker tracker(tracking);
-  ModelState state = scene.model.start;
-  std::vector<StackStep> steps(4);
-  for (StackStep& step : steps) {
-    stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
-    const std::vector<TrackedContact> contacts = scene.begin(tracker, state, stack_step);
-    stepper->get_velocities(step.velocity);
-    const StepSystem rows = stepper->system();
-    step.outcome = system.solve(*stepper, state, tracker, contacts, step.velocity, change);
-
-    ContactIslands islands(scene.surfaces, scene.model);
-    StepRows jacobian(scene.surfaces, scene.model, 1);
-    jacobian.begin(state, contacts);
-    jacobian.set_all();
-    std::vector<std::int32_t> all;
-    for (std::size_t c = 0; c < contacts.size(); ++c) all.push_back(static_cast<std::int32_t>(c));
-    StepProblem part;
-    part.set_pattern(
-        rows.rows, islands, jacobian.rows(),
-        std::vector<std::uint8_t>(static_cast<std::size_t>(scene.model.island_count), 1), all);
-    part.set_numbers(rows);
-    tracker.fill(part.problem());
-    std::vector<double> dofs;
-    for (std::int32_t row = 0; row < rows.rows.unknown_count; ++row) {
-      const Point3& v = step.velocity[static_cast<std::size_t>(rows.rows.block_of[row])];
-      dofs.insert(dofs.end(), v.begin(), v.end());
-    }
-    step.residual = residual_of(part.problem(), system.solution().impulse, dofs);
-
-    system.set_velocities(step.velocity, *stepper);
-    std::vector<Point3> set;
-    stepper->get_velocities(set);
-    EXPECT_EQ(set, step.velocity);
-    stepper->move(stack_step, {});
-    stepper->get_state(state);
-    tracker.end_step(system.solution(), scene.places(state));
-  }
-  return steps;
-}
 
 /// eta of a factorization of A, which the iteration does not have, is what the tolerance bounds.
 TEST(TwoLevelContact, ResidualIsWithinTheTolerance) {

@@ -1,6 +1,7 @@
 /// @file compliant_lists.hpp
 /// The bodies of a two-level iteration, and their rows.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,11 @@ struct CompliantLists {
 
   const CompliantBody& body_at(std::int64_t row) const {
     return bodies[static_cast<std::size_t>(body_of_row[static_cast<std::size_t>(row)])];
+  }
+  /// Whether A couples any body with others: then M^-1 may be far below A^-1.
+  bool has_joined() const {
+    return std::any_of(bodies.begin(), bodies.end(),
+                       [](const CompliantBody& body) { return body.is_joined; });
   }
   std::int64_t row_count() const { return static_cast<std::int64_t>(body_of_row.size()); }
 };

@@ -20,51 +20,30 @@ void TouchingBlocks::set(const CompliantLists& lists,
   laws_ = start.laws;
   offset_ = start.offset;
   diagonal_.resize(offset_.size());
-  list_blocks(elastic, rows, contacts);
+  jacobian_.set(rows, contacts, lists.row_of_block);
+  list_touched(elastic);
   parallel_for(threads(), count(), [&, this](std::int64_t contact) {
     set_own_block(elastic, inverse, index_of(contact));
   });
 }
 
-/// Lists blocks with their J, and the rows that they touch.
-void TouchingBlocks::list_blocks(const ElasticSpace& elastic,
-                                 const ContactRows& rows,
-                                 const std::vector<std::int32_t>& contacts) {
-  block_start_.assign(1, 0);
-  row_.clear();
+/// Lists where blocks are in y, and the rows that they touch.
+void TouchingBlocks::list_touched(const ElasticSpace& elastic) {
   place_.clear();
-  jacobian_.clear();
   is_touched_.assign(index_of(lists_->row_count()), 0);
-  for (const std::int32_t contact : contacts) {
-    const std::size_t end = index_of(rows.start[index_of(contact) + 1]);
-    for (std::size_t e = index_of(rows.start[index_of(contact)]); e < end; ++e) {
-      const std::int32_t row = lists_->row_of_block[index_of(rows.block[e])];
-      if (row < 0) continue;
-      const std::int32_t body = elastic.body_of_row(row);
-      row_.push_back(row);
-      place_.push_back(body < 0 ? 3 * std::int64_t{row}
-                                : elastic.bodies()[index_of(body)].first +
-                                      3 * std::int64_t{elastic.slot_of_row(row)});
-      jacobian_.insert(jacobian_.end(), rows.value[e].begin(), rows.value[e].end());
-      is_touched_[index_of(row)] = 1;
-    }
-    block_start_.push_back(static_cast<std::int32_t>(row_.size()));
+  for (const std::int32_t row : row()) {
+    const std::int32_t body = elastic.body_of_row(row);
+    place_.push_back(body < 0 ? 3 * std::int64_t{row}
+                              : elastic.bodies()[index_of(body)].first +
+                                    3 * std::int64_t{elastic.slot_of_row(row)});
+    is_touched_[index_of(row)] = 1;
   }
   touched_.clear();
   for (std::size_t row = 0; row < is_touched_.size(); ++row) {
     if (is_touched_[row] != 0) touched_.push_back(static_cast<std::int32_t>(row));
   }
-  for (auto* values : {&response_, &turned_}) values->resize(jacobian_.size());
-  rounded_.resize(jacobian_.size());
-}
-
-TouchingRows TouchingBlocks::rows() const {
-  TouchingRows rows;
-  rows.block_start = view_of(block_start_);
-  rows.row = view_of(row_);
-  rows.jacobian = view_of(jacobian_);
-  rows.offset = view_of(offset_);
-  return rows;
+  for (auto* values : {&response_, &turned_}) values->resize(9 * jacobian_.block_count());
+  rounded_.resize(turned_.size());
 }
 
 /// Turns J of a row of an elastic body, and adds its products with the rows of the same body before
@@ -72,7 +51,7 @@ TouchingRows TouchingBlocks::rows() const {
 void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
                                        std::size_t contact,
                                        std::size_t block) {
-  const std::int32_t row = row_[block], body = elastic.body_of_row(row);
+  const std::int32_t row = this->row()[block], body = elastic.body_of_row(row);
   const ElasticBody& own = elastic.bodies()[index_of(body)];
   const auto& r = own.rotation;
   const double* const j = jacobian(block);
@@ -83,12 +62,13 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
     rounded_[9 * block + e] = static_cast<float>(turned[e]);
   }
   double* const sum = laws_.constants[contact].block;
-  for (std::size_t other = index_of(block_start_[contact]); other <= block; ++other) {
-    if (elastic.body_of_row(row_[other]) != body) continue;
+  for (std::size_t other = index_of(block_start()[contact]); other <= block; ++other) {
+    if (elastic.body_of_row(this->row()[other]) != body) continue;
     const double* const second = this->turned(other);
-    const float* const g = own.compliance.data() +
-                           3 * index_of(elastic.slot_of_row(row_[other])) * index_of(own.size) +
-                           3 * index_of(elastic.slot_of_row(row));
+    const float* const g =
+        own.compliance.data() +
+        3 * index_of(elastic.slot_of_row(this->row()[other])) * index_of(own.size) +
+        3 * index_of(elastic.slot_of_row(row));
     for (std::size_t b = 0; b < 3; ++b) {
       double moved[3] = {};  // of the row for a unit impulse along axis b
       for (std::size_t k = 0; k < 3; ++k) {
@@ -110,13 +90,13 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
 void TouchingBlocks::set_response(const DiagonalInverse<double>& inverse,
                                   std::size_t contact,
                                   std::size_t block) {
-  const std::int32_t row = row_[block];
+  const std::int32_t row = this->row()[block];
   const CompliantBody& own = lists_->body_at(row);
   double* const response = response_.data() + 9 * block;
   std::fill_n(response, 9, 0.0);
   const std::int32_t size = 3 * own.count;
   for_blocks(contact, [&](std::size_t other) {
-    const std::int32_t column = row_[other] - own.first;
+    const std::int32_t column = this->row()[other] - own.first;
     if (column < 0 || column >= own.count) return;
     const double* const m =
         inverse.at(own.system_row) + 3 * std::ptrdiff_t{row - own.first} * size + 3 * column;
@@ -168,11 +148,6 @@ void TouchingBlocks::push(const std::vector<std::int32_t>& list,
   }
 }
 
-void TouchingBlocks::velocities_of_rows(const double* x, double* velocity) const {
-  const TouchVelocityOp op{rows(), {x, 3 * lists_->row_count()}, {velocity, 3 * count()}};
-  parallel_for(threads(), count(), op);
-}
-
 TouchingSums TouchingBlocks::measure(ContactSwitches switches,
                                      const double* impulse,
                                      const double* velocity,
@@ -195,26 +170,13 @@ TouchingSums TouchingBlocks::measure(ContactSwitches switches,
   return sums;
 }
 
-/// force += J^T r of one contact.
-void TouchingBlocks::add_push(std::size_t contact, const double* r, double* force) const {
-  for_blocks(contact, [&](std::size_t b) {
-    const double* const j = jacobian(b);
-    double* const own = force + first(b);
-    for (int k = 0; k < 3; ++k) own[k] += j[k] * r[0] + j[3 + k] * r[1] + j[6 + k] * r[2];
-  });
-}
-
-void TouchingBlocks::add_pushes(const double* impulse, double* force) const {
-  for (std::size_t c = 0; c < laws_.constants.size(); ++c) add_push(c, impulse + 3 * c, force);
-}
-
 void TouchingBlocks::set_changes(const double* before, const double* after, double* force) const {
   for (const std::int32_t row : touched_) std::fill_n(force + 3 * std::int64_t{row}, 3, 0.0);
   for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
     const double r[3] = {after[3 * c] - before[3 * c], after[3 * c + 1] - before[3 * c + 1],
                          after[3 * c + 2] - before[3 * c + 2]};
     if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
-    add_push(c, r, force);
+    jacobian_.add_push(c, r, force);
   }
 }
 
@@ -228,7 +190,7 @@ void TouchingBlocks::add_impulses(View<const double> load,
   for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
     const double r[3] = {impulse[3 * c] - laws_.preload[c], impulse[3 * c + 1], impulse[3 * c + 2]};
     if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
-    add_push(c, r, force);
+    jacobian_.add_push(c, r, force);
   }
 }
 

@@ -6,8 +6,8 @@
 
 #include <tetwarp/contact_problem.hpp>
 
+#include "host/simulate/solve/problem/block_jacobian.hpp"
 #include "host/simulate/solve/problem/contact_constants.hpp"
-#include "host/simulate/solve/problem/contact_rows.hpp"
 #include "host/simulate/solve/two_level/elastic_space.hpp"
 #include "kernels/body/row_product.hpp"
 #include "kernels/contact/touching_rows.hpp"
@@ -45,29 +45,31 @@ class TouchingBlocks {
   const ContactConstants<double>& law(std::size_t contact) const {
     return laws_.constants[contact];
   }
+  View<const ContactConstants<double>> constants() const {
+    return {laws_.constants.data(), count()};
+  }
   /// w of a contact [m/s].
   const double* offset(std::size_t contact) const { return offset_.data() + 3 * contact; }
   /// Diagonal of the blocks J M^-1 J^T of the contacts, [3 contacts].
   const std::vector<double>& diagonal() const { return diagonal_; }
 
   /// The blocks of each contact, one for each of the rows on which it acts.
-  TouchingRows rows() const;
+  TouchingRows rows() const { return jacobian_.rows(offset_); }
   /// Calls visit(b) for the blocks of a contact.
   template <class Visit>
   void for_blocks(std::size_t contact, const Visit& visit) const {
-    for (std::int32_t b = block_start_[contact]; b < block_start_[contact + 1]; ++b) {
-      visit(static_cast<std::size_t>(b));
-    }
+    jacobian_.for_blocks(contact, visit);
   }
-  const std::vector<std::int32_t>& block_start() const { return block_start_; }  ///< [contacts + 1]
-  const std::vector<std::int32_t>& row() const { return row_; }                  ///< [blocks]
+  /// [contacts + 1]
+  const std::vector<std::int32_t>& block_start() const { return jacobian_.block_start(); }
+  const std::vector<std::int32_t>& row() const { return jacobian_.row(); }  ///< [blocks]
   /// Its first number in y.
   std::int64_t place(std::size_t block) const { return place_[block]; }
   bool is_elastic(std::size_t block) const { return place_[block] != first(block); }
   /// Its first number in x and in forces.
-  std::int64_t first(std::size_t block) const { return 3 * std::int64_t{row_[block]}; }
+  std::int64_t first(std::size_t block) const { return 3 * std::int64_t{row()[block]}; }
   /// J, row by row: velocities along the axes of the contact per velocity of the row.
-  const double* jacobian(std::size_t block) const { return jacobian_.data() + 9 * block; }
+  const double* jacobian(std::size_t block) const { return jacobian_.block(block); }
   /// M^-1 J^T of a row of no elastic body, the three numbers for each axis of the contact.
   const double* response(std::size_t block) const { return response_.data() + 9 * block; }
   /// J R of a row of an elastic body, and the same rounded to float32.
@@ -80,11 +82,15 @@ class TouchingBlocks {
             const double* after,
             double* y) const;
   /// u = J x + w of all contacts. @param velocity  out [3 contacts]
-  void velocities_of_rows(const double* x, double* velocity) const;
+  void velocities_of_rows(const double* x, double* velocity) const {
+    jacobian_.velocities(x, offset_, threads(), velocity);
+  }
   /// force = load + J^T r in the rows that contacts touch. @param load  of the system
   void add_impulses(View<const double> load, const double* impulse, double* force) const;
   /// force += J^T r.
-  void add_pushes(const double* impulse, double* force) const;
+  void add_pushes(const double* impulse, double* force) const {
+    jacobian_.add_pushes(impulse, force);
+  }
   /// force = J^T (after - before) in the rows that contacts touch.
   void set_changes(const double* before, const double* after, double* force) const;
   /// @param free     u without impulses
@@ -99,23 +105,20 @@ class TouchingBlocks {
  private:
   /// Threads of loops over contacts: with few contacts starting threads takes longer than the loop.
   int threads() const { return count() < 256 ? 1 : threads_; }
-  void list_blocks(const ElasticSpace& elastic,
-                   const ContactRows& rows,
-                   const std::vector<std::int32_t>& contacts);
+  void list_touched(const ElasticSpace& elastic);
   void set_response(const DiagonalInverse<double>& inverse, std::size_t contact, std::size_t block);
   void add_elastic_block(const ElasticSpace& elastic, std::size_t contact, std::size_t block);
   void set_own_block(const ElasticSpace& elastic,
                      const DiagonalInverse<double>& inverse,
                      std::size_t contact);
-  void add_push(std::size_t contact, const double* r, double* force) const;
 
   int threads_;
   const CompliantLists* lists_ = nullptr;
   ContactConstantsList laws_;
   std::vector<double> offset_, diagonal_;
-  std::vector<std::int32_t> block_start_, row_;
+  BlockJacobian jacobian_;
   std::vector<std::int64_t> place_;
-  std::vector<double> jacobian_, response_, turned_;
+  std::vector<double> response_, turned_;
   std::vector<float> rounded_;
   std::vector<std::int32_t> touched_;     ///< rows, ascending
   std::vector<std::uint8_t> is_touched_;  ///< [rows]

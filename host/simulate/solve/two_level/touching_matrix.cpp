@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "host/base/index_of.hpp"
+#include "host/simulate/step/cpu/system_blocks.hpp"
 
 namespace tetwarp {
 namespace {
@@ -33,11 +34,7 @@ bool TouchingMatrix::set(const StepSystem& system,
 void TouchingMatrix::list_system(const StepSystem& system) {
   entries_.clear();
   for (std::int32_t row = 0; row < lists_->row_count(); ++row) {
-    const std::int32_t place = lists_->system_row[index_of(row)];
-    for (std::int32_t k = system.rows.start[place]; k < system.rows.free_end[place]; ++k) {
-      const std::int32_t column = system.rows.column[k];
-      if (column != place) entries_.push_back({row, row + column - place});
-    }
+    list_system_row(system.rows, lists_->system_row[index_of(row)], row, entries_);
   }
 }
 
@@ -54,18 +51,6 @@ void TouchingMatrix::list_contacts() {
   }
   std::ranges::sort(entries_);
   entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
-}
-
-/// The blocks of the system are stored column by column.
-void TouchingMatrix::add_system(const StepSystem& system) {
-  for (std::int32_t row = 0; row < lists_->row_count(); ++row) {
-    const std::int32_t place = lists_->system_row[index_of(row)];
-    for (std::int32_t k = system.rows.start[place]; k < system.rows.free_end[place]; ++k) {
-      const double* const a = system.values.data + 9 * std::int64_t{k};
-      const double block[9] = {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]};
-      lu_.add(row, row + system.rows.column[k] - place, block);
-    }
-  }
 }
 
 /// Adds J_p^T H J_q of all blocks of a contact.
@@ -91,7 +76,9 @@ void TouchingMatrix::add_contact(std::size_t contact, const double* slope) {
 
 bool TouchingMatrix::factor(const StepSystem& system, const std::vector<double>& slope) {
   lu_.clear();
-  add_system(system);
+  for (std::int32_t row = 0; row < lists_->row_count(); ++row) {
+    add_system_row(system.rows, system.values, lists_->system_row[index_of(row)], row, lu_);
+  }
   for (std::size_t c = 0; c < index_of(blocks_->count()); ++c) {
     const double* const own = slope.data() + 9 * c;
     if (std::any_of(own, own + 9, [](double value) { return value != 0; })) add_contact(c, own);

@@ -31,7 +31,6 @@ class TouchingMatrix {
  private:
   void list_system(const StepSystem& system);
   void list_contacts();
-  void add_system(const StepSystem& system);
   void add_contact(std::size_t contact, const double* slope);
 
   const CompliantLists* lists_ = nullptr;

@@ -26,8 +26,6 @@ constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 // Of the tolerance, at which they end: on stiff cloth the blocks D^-1, in which laws are measured,
 // are far below A^-1. A step or two more take little.
 constexpr double newton_share = 0.01;
-// Of the tolerance, at which convergence is checked: a check takes tens of products with A.
-constexpr double check_share = 0.2;
 // Up to these sizes the contact solver is quick where the iteration fails.
 constexpr std::int64_t small_contacts = 256, small_rows = 128;
 
@@ -96,7 +94,8 @@ View<double> TwoLevelSolver::mixed() {
 }
 
 CoupledControl TwoLevelSolver::control(bool ends_early) {
-  return control(ends_early, (check_.is_needed() ? check_share : 1) * options_.tolerance);
+  return control(ends_early,
+                 (check_.is_needed() ? CoupledControl::check_share : 1) * options_.tolerance);
 }
 
 CoupledControl TwoLevelSolver::control(bool ends_early, double tolerance) {
@@ -117,12 +116,13 @@ std::optional<CoupledError> TwoLevelSolver::find_error(const CoupledOutcome&) {
   blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
   const TouchingSums sums =
       blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data(), working_);
+  work_ = sums.work;
   return CoupledError::of(defect, sums.natural, sums.work);
 }
 
 double TwoLevelSolver::excess(const CoupledOutcome& outcome) {
   if (!check_.is_needed()) return 0;
-  checked_ = check_.run(x_, y_, impulse_, contact_velocity_,
+  checked_ = check_.run(x_, impulse_, contact_velocity_, work_,
                         {options_.tolerance, least_error_ / options_.tolerance},
                         [&] { return goes_on(outcome.sweeps); });
   return checked_ / options_.tolerance;

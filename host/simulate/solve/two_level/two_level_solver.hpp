@@ -122,6 +122,7 @@ class TwoLevelSolver {
   std::vector<std::int32_t> working_;    ///< contacts, of TouchingBlocks::measure()
   std::vector<double> stepped_;          ///< [3 contacts] impulses of the last step
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
+  double work_ = 0;                                        ///< of the last impulses
   double checked_ = 0;                                     ///< eta by the last run of check_
   double least_error_ = 0;                                 ///< of the velocities without contact
   std::int64_t product_operations_ = 0;                    ///< multiplications of a product with A

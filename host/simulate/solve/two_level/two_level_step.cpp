@@ -113,6 +113,28 @@ void TwoLevelStep::add_elastic(const TouchingBlocks& blocks,
       });
 }
 
+void TwoLevelStep::multiply_chunk(const Chunk& chunk, const double* x, double* out) const {
+  const std::int64_t shift = 3 * (std::int64_t{chunk.row_begin} - chunk.system_row);
+  GradientArrays<double> a;
+  a.rows = system_->rows;
+  a.values = a.copy = system_->values;
+  // Columns of the system are rows of the same island.
+  a.p.data = const_cast<double*>(x) + shift;  // only read
+  a.q.data = out + shift;
+  vector_stages().product(a, chunk.system_row, chunk.system_row + chunk.row_end - chunk.row_begin);
+}
+
+/// out = omega D^-1 push of the rows of a chunk, unless they are of an elastic body.
+void TwoLevelStep::solve_chunk(const Chunk& chunk, const double* push, double* out) const {
+  for (std::int64_t row = chunk.row_begin; row < chunk.row_end && !chunk.is_elastic; ++row) {
+    const double omega = lists_->body_at(row).relaxation;
+    double* const own = out + 3 * row;
+    const int count =
+        diagonal_.multiply(row + chunk.system_row - chunk.row_begin, push + 3 * row, own);
+    for (int i = 0; i < count; ++i) own[i] *= omega;
+  }
+}
+
 /// d of the rows of a chunk; unless they are of an elastic body also their y, and their part of
 /// d . omega D^-1 d.
 void TwoLevelStep::step_chunk(std::int64_t c,
@@ -120,29 +142,33 @@ void TwoLevelStep::step_chunk(std::int64_t c,
                               const std::vector<double>& force,
                               std::vector<double>& y) {
   const Chunk& chunk = chunks_[index_of(c)];
-  const std::int64_t shift = 3 * (std::int64_t{chunk.row_begin} - chunk.system_row);
-  const std::int64_t end = chunk.system_row + chunk.row_end - chunk.row_begin;
-  double* const d = product_.data();
-  GradientArrays<double> a;
-  a.rows = system_->rows;
-  a.values = a.copy = system_->values;
-  // Columns of the system are rows of the same island.
-  a.p = {const_cast<double*>(x.data()) + shift, static_cast<std::int64_t>(x.size())};  // only read
-  a.q = {d + shift, static_cast<std::int64_t>(product_.size())};
-  vector_stages().product(a, chunk.system_row, end);
-  for (std::int64_t i = 3 * std::int64_t{chunk.row_begin}; i < 3 * std::int64_t{chunk.row_end}; ++i)
-    d[i] = force[index_of(i)] - d[i];
+  multiply_chunk(chunk, x.data(), product_.data());
+  const std::size_t begin = 3 * index_of(chunk.row_begin), end = 3 * index_of(chunk.row_end);
+  for (std::size_t i = begin; i < end; ++i) product_[i] = force[i] - product_[i];
+  squares_[index_of(c)] = 0;
+  if (chunk.is_elastic) return;
+  solve_chunk(chunk, product_.data(), moved_.data());
   double square = 0;
-  for (std::int64_t row = chunk.row_begin; row < chunk.row_end && !chunk.is_elastic; ++row) {
-    const double omega = lists_->body_at(row).relaxation;
-    double z[6];
-    const int count = diagonal_.multiply(row + chunk.system_row - chunk.row_begin, d + 3 * row, z);
-    for (int i = 0; i < count; ++i) {
-      y[index_of(3 * row + i)] = x[index_of(3 * row + i)] + omega * z[i];
-      square += omega * d[3 * row + i] * z[i];
-    }
+  for (std::size_t i = begin; i < end; ++i) {
+    y[i] = x[i] + moved_[i];
+    square += product_[i] * moved_[i];
   }
   squares_[index_of(c)] = square;
+}
+
+void TwoLevelStep::multiply(const double* x, double* out) const {
+  parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()),
+                 [&](std::int64_t c) { multiply_chunk(chunks_[index_of(c)], x, out); });
+}
+
+void TwoLevelStep::solve(const double* push, double* out) const {
+  parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()),
+                 [&](std::int64_t c) { solve_chunk(chunks_[index_of(c)], push, out); });
+  parallel_tasks(
+      threads_, static_cast<std::int64_t>(elastic_->bodies().size()), [&](std::int64_t b) {
+        const std::int64_t first = 3 * std::int64_t{elastic_->bodies()[index_of(b)].row_begin};
+        elastic_->solve(index_of(b), push + first, out + first);
+      });
 }
 
 }  // namespace tetwarp

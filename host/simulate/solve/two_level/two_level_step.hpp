@@ -34,6 +34,10 @@ class TwoLevelStep {
              std::vector<double>& y);
   /// d of the last run(), [rows][3].
   const std::vector<double>& defect() const { return product_; }
+  /// out = A x. @param x, out  [rows][3]
+  void multiply(const double* x, double* out) const;
+  /// out = M^-1 push. @param push, out  [rows][3]
+  void solve(const double* push, double* out) const;
   /// Adds M^-1 J^T (after - before) to the rows of elastic bodies, which sweeps leave as they are.
   /// @param before, after  impulses, [3 contacts]
   void add_elastic(const TouchingBlocks& blocks,
@@ -50,6 +54,8 @@ class TwoLevelStep {
   };
 
   void list_chunks();
+  void multiply_chunk(const Chunk& chunk, const double* x, double* out) const;
+  void solve_chunk(const Chunk& chunk, const double* push, double* out) const;
   void step_chunk(std::int64_t chunk,
                   const std::vector<double>& x,
                   const std::vector<double>& force,

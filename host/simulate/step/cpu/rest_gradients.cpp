@@ -83,7 +83,7 @@ std::int64_t RestGradients::solve(const GradientArrays<double>& a,
   for (std::int64_t k = 3 * begin; k < 3 * end; ++k) a.r[k] = a.load[k] - a.q[k];
   CpuExec exec(1, StageClocks::off);
   GradientScalars scalars{};
-  gradient_sum(exec, gradient_label(), 0, 1, GradientStartOp<RestSystem>{system}, &scalars.square);
+  gradient_start(exec, system, 0, 1, &scalars.square);
   system.target = square_of(options.tolerance / 2) * square(a, a.load, begin, end);
   const GradientIteration<RestSystem> next{system, 0, 1, &scalars, &scalars.square};
   const std::int64_t most = std::min(most_iterations, options.max_iterations);

@@ -27,7 +27,7 @@ class RowRangeLu {
   void solve(std::span<double> x) { lu_.solve(x); }
 
  private:
-  std::int64_t begin_ = 0, count_ = 0;
+  std::int32_t begin_ = 0, count_ = 0;
   BlockLu lu_;
   std::vector<BlockLu::Entry> entries_;
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/base/stopwatch.hpp"
-#include "host/simulate/step/cuda/two_level_numbers.cuh"
+#include "host/simulate/step/cuda/residual_check_cuda.cuh"
 #include "kernels/contact/anderson.hpp"
 #include "kernels/contact/coupled_iteration.hpp"
 #include "kernels/contact/proximal_step.hpp"
@@ -18,7 +18,8 @@ namespace tetwarp {
 
 /// See TwoLevelSolver for what is iterated. Here all bodies are compliant ones, and instead of
 /// sweeps, which visit contacts one after the other, accelerated proximal steps move all contacts
-/// at once. The host reads the sums of an error once per outer iteration and per eight steps.
+/// at once. The host reads the sums of an error once per outer iteration and per eight steps, and a
+/// check of convergence once.
 class TwoLevelIteration {
  public:
   /// @param exec                     whose streams are used
@@ -26,6 +27,7 @@ class TwoLevelIteration {
   TwoLevelIteration(const CudaExec& exec, std::int64_t node_count, std::int64_t rigid_count)
       : exec_(exec, StageClocks::off),
         run_exec_(exec, StageClocks::off),
+        check_(exec.number()),
         numbers_(node_count, rigid_count) {}
 
   /// @param rows    of the system, in memory of the device
@@ -42,10 +44,14 @@ class TwoLevelIteration {
     lists_ = &lists;
     options_ = &options;
     switches_ = {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
+    is_checked_ = lists.has_joined();
+    if (is_checked_ && !check_.is_possible()) return {};
     numbers_.set(exec_, rows, arrays, points, lists, start, factors);
     resize();
+    checked_ = 0;
     CoupledOutcome outcome = solve_coupled<Mixer>(*this);
     outcome.is_result = outcome.converged || outcome.is_stopped;
+    if (outcome.converged && checked_ > 0) outcome.residual = checked_;
     return outcome;
   }
 
@@ -79,9 +85,10 @@ class TwoLevelIteration {
   CoupledControl control(bool ends_early) {
     exec_.make_zeros(none_, contact_numbers_);  // zeros
     sum_error(const_view(none_), const_view(free_velocity_));
+    const double share = is_checked_ ? CoupledControl::check_share : 1;
     return CoupledControl({.has_elastic = has_elastic(),
                            .ends_early = ends_early,
-                           .tolerance = options_->tolerance,
+                           .tolerance = share * options_->tolerance,
                            .natural_alone = exec_.load(sums_.view().data).error.value[0],
                            .few_sweeps = ProximalState::steps_at_once,
                            .least_error = least_error_});
@@ -93,19 +100,31 @@ class TwoLevelIteration {
     for_each(contact_numbers_ / 3, TouchVelocityOp{rows(), velocity(), contact_velocity()});
     sum_error(impulse(), contact_velocity());
     const Sums sums = exec_.load(sums_.view().data);
-    CoupledError error =
-        CoupledError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
+    work_ = sums.error.value[1];
+    CoupledError error = CoupledError::of(sums.defect.value[0], sums.error.value[0], work_);
     // Rounding may make inverses of very stiff bodies indefinite; then the host has to solve.
     if (sums.defect.value[0] < 0) error.total = std::numeric_limits<double>::quiet_NaN();
     return error;
   }
   static void keep(double) {}
-  static double excess(const CoupledOutcome&) { return 0; }
+  double excess(const CoupledOutcome& outcome) {
+    if (!is_checked_) return 0;
+    // A launch has no end but its own: a caller that may end the solve is asked between several.
+    const std::int64_t most_at_once =
+        options_->progress ? watched_iterations : CausedProgress::most_iterations;
+    checked_ = check_.run(exec_, numbers_, switches_,
+                          {options_->tolerance, least_error_ / options_->tolerance},
+                          {velocity(),
+                           defect_.view(),
+                           moved_.view(),
+                           {impulse(), contact_velocity(), free_velocity_.view(), none_.view()},
+                           work_},
+                          most_at_once, [&] { return goes_on(outcome); });
+    return checked_ / options_->tolerance;
+  }
   Next limit(const CoupledOutcome& outcome) const {
     if (outcome.sweeps > most_of_solve) return Next::fails;
-    const bool goes_on =
-        !options_->progress || options_->progress({clock_.seconds(), outcome.sweeps, 0});
-    return goes_on ? Next::proceeds : Next::is_stopped;
+    return goes_on(outcome) ? Next::proceeds : Next::is_stopped;
   }
   void solve_contacts(double enough, CoupledOutcome& outcome) {
     exec_.copy(label, View<const double>(impulse()), stepped_.view());
@@ -128,9 +147,14 @@ class TwoLevelIteration {
   // scene `candy` takes 121 a time step.
   static constexpr std::int64_t most_steps = 1000;
   static constexpr std::int64_t most_of_solve = 20000;
+  // Of conjugate gradients, about a millisecond.
+  static constexpr std::int64_t watched_iterations = 100;
   static constexpr int most_growths = 10;  ///< of the majorants, of an outer iteration
   static constexpr const char* label = "body/contact";
 
+  bool goes_on(const CoupledOutcome& outcome) const {
+    return !options_->progress || options_->progress({clock_.seconds(), outcome.sweeps, 0});
+  }
   View<double> part(std::int64_t first, std::int64_t size) const {
     return {results_data_ + first, size};
   }
@@ -165,6 +189,7 @@ class TwoLevelIteration {
     terms_.resize(contact_numbers_ / 3);
     sums_.resize(1);
     state_.resize(1);
+    if (is_checked_) check_.resize(contact_numbers_, row_numbers_);
   }
 
   /// image = velocity + M^-1 d, d = b + J^T (r - preload) - A velocity; sums d . M^-1 d.
@@ -235,6 +260,7 @@ class TwoLevelIteration {
 
   CudaExec exec_;
   CudaExec run_exec_;  ///< of recorded runs: its sums stay where they are
+  ResidualCheckCuda check_;
   TwoLevelNumbers numbers_;
   const CompliantLists* lists_ = nullptr;    ///< of the present solve
   const ContactOptions* options_ = nullptr;  ///< of the present solve
@@ -242,6 +268,9 @@ class TwoLevelIteration {
   Stopwatch clock_;
   std::int64_t contact_numbers_ = 0, row_numbers_ = 0;  ///< 3 per contact, per row
   double least_error_ = 0;                              ///< of the velocities without contact
+  double work_ = 0;                                     ///< of the last impulses
+  bool is_checked_ = false;  ///< whether its own errors are no measure of convergence
+  double checked_ = 0;       ///< eta by the last check
   Vector results_;
   double* results_data_ = nullptr;
   Vector free_velocity_, none_, stepped_, ahead_;  ///< [3 contacts]

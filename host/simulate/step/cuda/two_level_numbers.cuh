@@ -9,6 +9,7 @@
 #include "host/simulate/step/body_arrays.hpp"
 #include "host/simulate/step/cuda/compliance_store.cuh"
 #include "host/simulate/step/cuda/touching_lists.cuh"
+#include "kernels/contact/compliant_gradients.hpp"
 #include "kernels/contact/row_start.hpp"
 
 namespace tetwarp {
@@ -101,6 +102,11 @@ class TwoLevelNumbers {
                      View<double> out) const {
     return {touching_.bodies, touching_.rows, rows_,    values_, load_,
             velocity,         impulse,        preload_, out};
+  }
+  /// The system of the step in frames, with vectors of conjugate gradients.
+  CompliantGradients gradients(
+      View<double> x, View<double> r, View<double> z, View<double> p, View<double> q) const {
+    return {touching_.bodies, rows_, values_, x, r, z, p, q};
   }
 
  private:

@@ -1,6 +1,6 @@
 /// @file contact_shares.cpp
 /// Divides coupling islands between the two solvers.
-#include "host/simulate/solve/contact_shares.hpp"
+#include "host/simulate/solve/problem/contact_shares.hpp"
 #include "host/base/index_of.hpp"
 
 namespace tetwarp {
