@@ -144,6 +144,7 @@ AffineTransform affine_of(const std::string& path,
                           const Kind& kind) {
   const std::vector<double>& p = transform.parameters;
   check_finite(path, transform.type, p, kind.parameter_count, "parameters");
+  check_finite(path, transform.type, transform.fixed, transform.fixed.size(), "fixed parameters");
   AffineTransform affine{kind.matrix(transform), {0, 0, 0}};
   Point3 center{0, 0, 0};
   if (transform.fixed.size() >= 3) std::copy_n(transform.fixed.begin(), 3, center.begin());

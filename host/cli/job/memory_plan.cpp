@@ -18,8 +18,8 @@
 namespace tetwarp::cli {
 namespace {
 /// Throws IoError unless the output can be computed in blocks.
-void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
-  const std::string reason = needs_all_at_once(arguments);
+void check_blocks(const VolumePlan& plan, const WarpArguments& arguments, bool has_curves) {
+  const std::string reason = needs_all_at_once(arguments, has_curves);
   if (reason.empty()) return;
   throw IoError(plan.path, "",
                 fmt::format("{}, or give --memory at least {}", reason, limit_text(plan.memory)));
@@ -129,7 +129,8 @@ double least_block_memory(BlockPlanner& planner,
   return least;
 }
 
-std::string needs_all_at_once(const WarpArguments& arguments) {
+std::string needs_all_at_once(const WarpArguments& arguments, bool has_curves) {
+  if (has_curves) return "tetrahedra of ten nodes need the whole source; use --ten-nodes split";
   if (arguments.extra.contains(forward_output)) {
     return "the forward displacement needs the whole mesh; leave out --outputs forward";
   }
@@ -162,9 +163,12 @@ bool plan_memory(VolumePlan& plan,
     source_bytes +=
         source_voxels * array.components * filter_bytes(arguments.warp.filter, array.type);
   }
-  // Owners of voxels, kept where voxels outside or labels by Gaussian weights depend on them.
-  const bool keeps_owners = (extends(arguments.warp.outside) || takes_gaussian(arguments.warp)) &&
-                            !arguments.extra.contains(owner_output);
+  // Owners of voxels, kept where voxels outside, labels by Gaussian weights or curved maps depend
+  // on them.
+  const bool has_curves = !mesh.mid_nodes().empty();
+  const bool needs_owners =
+      extends(arguments.warp.outside) || takes_gaussian(arguments.warp) || has_curves;
+  const bool keeps_owners = needs_owners && !arguments.extra.contains(owner_output);
   const double samples = source_bytes + output_bytes + (keeps_owners ? 4 * output_voxels : 0);
   const double resident = resident_memory();
   const double limit = arguments.memory > 0
@@ -176,7 +180,7 @@ bool plan_memory(VolumePlan& plan,
   if (arguments.memory > 0) {
     if (plan.memory > limit) {
       plan.memory_limit = limit;
-      check_blocks(plan, arguments);
+      check_blocks(plan, arguments, has_curves);
     }
   } else if (plan.memory > limit) {
     const std::string refusal = fmt::format(

@@ -12,7 +12,8 @@
 namespace tetwarp::cli {
 
 /// Why an output cannot be computed in blocks, with a remedy; empty: it can.
-std::string needs_all_at_once(const WarpArguments& arguments);
+/// @param has_curves  whether the mesh has tetrahedra of ten nodes
+std::string needs_all_at_once(const WarpArguments& arguments, bool has_curves = false);
 
 /// Bytes of one voxel of all arrays.
 double voxel_bytes(const std::vector<ArrayHeader>& arrays);
