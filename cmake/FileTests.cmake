@@ -114,6 +114,7 @@ endfunction()
 tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli.cpp
   tests/cli/test_cli_arrays.cpp
+  tests/cli/test_cli_curved.cpp
   tests/cli/test_cli_mesh.cpp
   tests/cli/test_cli_axes.cpp
   tests/cli/test_cli_bad_formats.cpp

@@ -26,7 +26,8 @@ tetwarp_sources(tetwarp_io io/image
   image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp mgh_header.cpp
   nrrd_header.cpp vti_write.cpp)
 tetwarp_sources(tetwarp_io io/import
-  coarse_surface.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp)
+  coarse_surface.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp
+  split_cells.cpp)
 tetwarp_sources(tetwarp_io io/nifti
   nifti_components.cpp nifti_extension.cpp nifti_facts.cpp nifti_fields.cpp nifti_grid.cpp
   nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)

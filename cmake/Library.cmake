@@ -7,7 +7,7 @@ else()
 endif()
 add_library(tetwarp)
 tetwarp_sources(tetwarp host/base
-  backend.cpp box_tree.cpp error.cpp host_tasks.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp
+  backend.cpp box_tree.cpp curved_mesh.cpp error.cpp host_tasks.cpp lattice_cells.cpp mesh.cpp names.cpp page_lock.cpp
   parallel.cpp repeated_cells.cpp report.cpp volume.cpp)
 tetwarp_sources(tetwarp host/collide
   body_partners.cpp certify.cpp collide_items.cpp exact_integer.cpp grid_plan.cpp known_hits.cpp
@@ -103,7 +103,7 @@ tetwarp_sources(tetwarp host/simulate/surfaces
   contact_thickness.cpp flat_edges.cpp kept_places.cpp near_pair.cpp pair_materials.cpp
   round_shape.cpp scene_surfaces.cpp surface_motion.cpp)
 tetwarp_sources(tetwarp host/warp
-  backend_choice.cpp block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp map_points.cpp
+  backend_choice.cpp block_mesh.cpp blocks.cpp curve_checks.cpp geometry.cpp hex_split.cpp map_points.cpp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
   backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_plan.cpp

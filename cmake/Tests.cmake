@@ -283,10 +283,10 @@ if(NOT BUILD_SHARED_LIBS)
   add_library(tetwarp_backend_tests OBJECT
     tests/contact/test_contact_cuda.cpp
     tests/warp/test_blocks.cpp tests/warp/test_grid_point_masks.cpp tests/warp/test_label_rules.cpp
-    tests/warp/test_map_points.cpp
+    tests/warp/test_map_points.cpp tests/warp/test_map_points_curved.cpp
     tests/warp/test_parity.cpp
     tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
-    tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp
+    tests/warp/test_warp_curved.cpp tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp
     tests/warp/test_warp_intensity.cpp tests/warp/test_warp_outside.cpp
     tests/warp/test_warp_quantities.cpp
     tests/warp/test_warp_rounding.cpp)
@@ -339,7 +339,8 @@ endif()
 # ---- every public header compiles alone, without CUDA, where every file does ---------------------
 if(NOT TETWARP_UNITY)
   set(tetwarp_public_headers backend blocks camera cast certify choices contact contact_adhesion
-    contact_analysis contact_arrays contact_problem contact_tracker error loft make map_points mesh names
+    contact_analysis contact_arrays contact_problem contact_tracker curved_mesh error loft make
+    map_points mesh names
     page_lock report resample scene scene_parts simulate surface tetwarp version volume warp warp_operator)
   if(TETWARP_IO)
     list(APPEND tetwarp_public_headers axes contact_io film io mesh_array mesh_import nifti point_file

@@ -41,6 +41,7 @@ inline constexpr ReportField<Counts, std::int64_t> count_fields[] = {
     {"cells_unchanged", &Counts::cells_unchanged},
     {"cells_constant", &Counts::cells_constant},
     {"voxels_copied", &Counts::voxels_copied},
+    {"voxels_straightened", &Counts::voxels_straightened},
     {"chunks_background", &Counts::chunks_background},
     {"tets_averaged", &Counts::tets_averaged},
     {"values_clipped", &Counts::values_clipped},

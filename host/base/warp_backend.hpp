@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/warp.hpp>
 
 namespace tetwarp {
@@ -16,6 +17,7 @@ namespace tetwarp {
 struct WarpPlan {
   std::vector<VolumeView> sources;
   Mesh mesh;  ///< its last tetrahedra are those that the hexahedra were split into
+  std::vector<MidNodes> mid_nodes;  ///< of its first tetrahedra; empty: none has ten nodes
   WarpOptions options;
   Region source_region;  ///< of the source grid: voxels that the sources' data hold
   Grid output_grid;      ///< the whole output grid

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <tetwarp/backend.hpp>
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/volume.hpp>
@@ -28,6 +29,8 @@ struct MappedPoints {
   std::vector<Point3> points;        ///< those that no cell holds are where they were
   std::vector<std::int32_t> owners;  ///< number of the mesh's cell, -1: none
   std::int64_t outside = 0;          ///< number of points that no cell holds
+  /// Number of points in tetrahedra of ten nodes that move with the straight one, see CurvedMesh.
+  std::int64_t straightened = 0;
 };
 
 /// Moves points with the cells that hold them. The owner of a point is that of a voxel in a warp:
@@ -44,6 +47,13 @@ struct MappedPoints {
 ///         grid, cells of more than 2^20 of its voxels
 /// @throws CudaError              when `backend` is cuda and the device is not usable
 TETWARP_EXPORT MappedPoints map_points(const Mesh& mesh,
+                                       const std::vector<Point3>& deformed,
+                                       std::vector<Point3> points,
+                                       const MapPointsOptions& options = {});
+
+/// By the curved maps of tetrahedra of ten nodes, see CurvedMesh; its voxels are those of
+/// MapPointsOptions::grid.
+TETWARP_EXPORT MappedPoints map_points(const CurvedMesh& mesh,
                                        const std::vector<Point3>& deformed,
                                        std::vector<Point3> points,
                                        const MapPointsOptions& options = {});

@@ -51,10 +51,12 @@ struct TETWARP_EXPORT Counts {
   std::int64_t cells_unchanged = 0;  ///< cells without a moved tetrahedron: not written again
   std::int64_t cells_constant = 0;   ///< cells of one value: filled, not sampled (first source)
   std::int64_t voxels_copied = 0;    ///< voxels moved by whole voxels: copied, not interpolated
-  std::int64_t chunks_background = 0;  ///< file chunks that hold only background: not stored
-  std::int64_t tets_averaged = 0;      ///< tetrahedra whose voxels are means of samples (antialias)
-  std::int64_t values_clipped = 0;     ///< integers of Intensity::conservative beyond the limits of
-                                       ///< the pixel type, stored as the limit
+  std::int64_t voxels_straightened = 0;  ///< voxels of tetrahedra of ten nodes that are mapped by
+                                         ///< the straight one, see CurvedMesh
+  std::int64_t chunks_background = 0;    ///< file chunks that hold only background: not stored
+  std::int64_t tets_averaged = 0;   ///< tetrahedra whose voxels are means of samples (antialias)
+  std::int64_t values_clipped = 0;  ///< integers of Intensity::conservative beyond the limits of
+                                    ///< the pixel type, stored as the limit
   std::int64_t blocks = 0;      ///< parts of the output computed one by one; 0: the whole at once
   std::int64_t bytes_read = 0;  ///< from files
   std::int64_t bytes_written = 0;  ///< to files

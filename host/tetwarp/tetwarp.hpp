@@ -11,6 +11,7 @@
 #include <tetwarp/contact_analysis.hpp>
 #include <tetwarp/contact_problem.hpp>
 #include <tetwarp/contact_tracker.hpp>
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/loft.hpp>
 #include <tetwarp/make.hpp>

@@ -16,6 +16,7 @@
 
 #include <tetwarp/backend.hpp>
 #include <tetwarp/choices.hpp>
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/report.hpp>
@@ -217,6 +218,12 @@ class TETWARP_EXPORT Warper {
   /// @throws CudaError              when `backend` is cuda and the device is not usable
   Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options = {});
   Warper(const Volume& source, const Mesh& mesh, const WarpOptions& options = {});
+  /// By the curved maps of tetrahedra of ten nodes, see CurvedMesh. For values as they are: no
+  /// antialias, densities, vectors and tensors, label rules but linear, source window and forward
+  /// field; for these pass split_curved(mesh).
+  Warper(std::span<const VolumeView> sources,
+         const CurvedMesh& mesh,
+         const WarpOptions& options = {});
   Warper(Warper&&) noexcept;
   Warper& operator=(Warper&&) noexcept;
   ~Warper();

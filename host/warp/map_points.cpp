@@ -51,13 +51,11 @@ void move(Backend backend, const PointPlan& plan, MappedPoints& result) {
       return move_points_cpu(plan, result);
   }
 }
-}  // namespace
-
-MappedPoints map_points(const Mesh& mesh,
-                        const std::vector<Point3>& deformed,
-                        std::vector<Point3> points,
-                        const MapPointsOptions& options) {
-  check_mesh(mesh);
+MappedPoints moved(const Mesh& mesh,
+                   const std::vector<MidNodes>& mid_nodes,
+                   const std::vector<Point3>& deformed,
+                   std::vector<Point3> points,
+                   const MapPointsOptions& options) {
   check_deformed(mesh, deformed);
   const int threads = thread_count(options.threads);
   const Backend backend = options.backend == Backend::automatic
@@ -68,11 +66,29 @@ MappedPoints map_points(const Mesh& mesh,
   const std::vector<Point3>& to = options.inverse ? mesh.rest_positions : deformed;
   const Grid grid = options.grid.value_or(grid_around(from));
   check_grid(grid, "grid of the points");
-  MappedPoints result{std::move(points), {}, 0};
+  MappedPoints result{.points = std::move(points), .owners = {}};
   result.owners.resize(result.points.size());
-  move(backend, {split, from, to, grid, options.device, threads}, result);
+  move(backend, {split, mid_nodes, from, to, grid, options.device, threads}, result);
   result.outside = std::count(result.owners.begin(), result.owners.end(), -1);
   return result;
+}
+}  // namespace
+
+MappedPoints map_points(const Mesh& mesh,
+                        const std::vector<Point3>& deformed,
+                        std::vector<Point3> points,
+                        const MapPointsOptions& options) {
+  check_mesh(mesh);
+  return moved(mesh, {}, deformed, std::move(points), options);
+}
+
+MappedPoints map_points(const CurvedMesh& mesh,
+                        const std::vector<Point3>& deformed,
+                        std::vector<Point3> points,
+                        const MapPointsOptions& options) {
+  check_mesh(mesh.mesh);
+  check_mid_nodes(mesh.mesh, mesh.mid_nodes);
+  return moved(mesh.mesh, mesh.mid_nodes, deformed, std::move(points), options);
 }
 
 }  // namespace tetwarp

@@ -32,7 +32,8 @@ class WarpOutputs {
       : exec_(exec),
         frame_(frame),
         volume_count_(plan.sources.size()),
-        always_owns_(extends(plan.options.outside) || takes_gaussian(plan.options)),
+        always_owns_(extends(plan.options.outside) || takes_gaussian(plan.options) ||
+                     !plan.mid_nodes.empty()),
         voxel_bytes_(voxel_bytes_of(plan.sources)) {
     for (Slot& slot : slots_) slot.arrays.resize(voxel_bytes_.size());
   }
@@ -62,7 +63,7 @@ class WarpOutputs {
   /// Where an executor writes volume s.
   void* volume(std::size_t s, const WarpTarget& target) { return writable(s, target); }
   /// Where it writes the other arrays; null: not written. Owners have memory also when only a
-  /// field, voxels outside or labels are computed from them.
+  /// field, voxels outside, labels or curved maps are computed from them.
   WarpTarget extra(const WarpTarget& target) {
     WarpTarget arrays;
     for (std::size_t e = 0; e < extra_outputs.size(); ++e) {

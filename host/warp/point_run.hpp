@@ -16,8 +16,8 @@ void move_points(Exec& exec, const PointPlan& plan, MappedPoints& result) {
   const PointSearch search = make_point_search(map, plan.from, plan.mesh.tets);
   const auto count = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
   const auto numbers = [](const auto& list) { return list.empty() ? nullptr : list[0].data(); };
-  typename Exec::template Vector<std::int64_t> first;
-  typename Exec::template Vector<std::int32_t> listed, tets, hexes, owners;
+  typename Exec::template Vector<std::int64_t> first, straightened;
+  typename Exec::template Vector<std::int32_t> listed, tets, hexes, curves, owners;
   typename Exec::template Vector<PointPlanes> planes;
   typename Exec::template Vector<Node> rounded;
   typename Exec::template Vector<double> from, to, points;
@@ -33,6 +33,9 @@ void move_points(Exec& exec, const PointPlan& plan, MappedPoints& result) {
   op.tets = exec.input(numbers(plan.mesh.tets), 4 * count(plan.mesh.tets), tets);
   op.hexes = {exec.input(numbers(plan.mesh.hexes), 8 * count(plan.mesh.hexes), hexes),
               count(plan.mesh.tets) - tets_per_hex * count(plan.mesh.hexes)};
+  op.curves = {exec.input(numbers(plan.mid_nodes), 6 * count(plan.mid_nodes), curves)};
+  exec.put(&result.straightened, 1, straightened);
+  op.straightened = exec.view(straightened);
   op.nodes = {exec.input(numbers(plan.from), 3 * count(plan.from), from),
               exec.input(numbers(plan.to), 3 * count(plan.to), to)};
   op.points = exec.view(points);
@@ -41,6 +44,7 @@ void move_points(Exec& exec, const PointPlan& plan, MappedPoints& result) {
   if (result.points.empty()) return;
   exec.get(View<const double>(op.points), result.points[0].data());
   exec.get(View<const std::int32_t>(op.owners), result.owners.data());
+  exec.get(View<const std::int64_t>(op.straightened), &result.straightened);
 }
 
 }  // namespace tetwarp

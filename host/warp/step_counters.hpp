@@ -26,6 +26,7 @@ struct MeshCounters {
 struct WorkCounters {
   std::int64_t candidates;      ///< candidate pairs of the tetrahedra to cull
   std::int64_t merged_pairs;    ///< all pairs of the step
+  std::int64_t straightened;    ///< voxels whose curved map has no inverse
   std::int64_t moved;           ///< tetrahedra that have moved
   std::int64_t pairs;           ///< of the candidates, not rejected
   std::int64_t accepted;        ///< of `pairs`
@@ -168,6 +169,7 @@ inline StepReport make_step_report(const StepCounters& counters,
   counts.cells_unchanged = sizes.cells_unchanged;
   counts.cells_constant = work.constant_cells;
   counts.voxels_copied = work.raster.copied;
+  counts.voxels_straightened = work.straightened;
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "host/warp/box_sums.hpp"
 #include "host/warp/cell_raster_stage.hpp"
 #include "host/warp/counter_totals.hpp"
+#include "host/warp/curves.hpp"
 #include "host/warp/extension.hpp"
 #include "host/warp/fields.hpp"
 #include "host/warp/geometry.hpp"
@@ -44,6 +45,7 @@ class WarpPipeline : public WarpBackend {
         totals_(exec_, plan_, geometry_),
         roundings_(exec_, plan_, geometry_),
         extension_(exec_, plan_, geometry_),
+        curves_(exec_, plan_, geometry_),
         counter_totals_(exec_, geometry_.frame.cell_count()) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
@@ -162,9 +164,9 @@ class WarpPipeline : public WarpBackend {
     pairs_.run(positions);
     transforms_.run(pairs_);
     stale_ = {};
-    // Voxels outside depend on the whole surface.
-    if (age > 0 && !extension_.is_requested() && pairs_.are_updates(age))
-      stale_ = pairs_.touched_in(age);
+    // Voxels outside depend on the whole surface, those of curved cells on nodes without a pair.
+    const bool are_local = !extension_.is_requested() && !curves_.are_there();
+    if (age > 0 && are_local && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
     const WarpTarget extra = outputs_.extra(target);
     const StepShares shares(plan_, extra.fields);
@@ -174,6 +176,7 @@ class WarpPipeline : public WarpBackend {
     const View<std::int32_t> owners{extra.owner,
                                     extra.owner != nullptr ? geometry_.frame.voxel_count() : 0};
     fields_.run(pairs_, owners, stale_, extra.fields);
+    if (curves_.are_there()) curve(target, owners, extra.fields);
     if (extension_.is_requested()) extend(target, owners, extra.fields.displacement);
     if (takes_gaussian(plan_.options)) choose_labels(target, owners);
     voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
@@ -203,6 +206,19 @@ class WarpPipeline : public WarpBackend {
         extension_.write(job, owners, s == 0 ? displacement : nullptr);
       });
     }
+  }
+
+  /// Voxels of tetrahedra of ten nodes, of all sources.
+  void curve(const WarpTarget& target, View<const std::int32_t> owners, const FieldTarget& fields) {
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
+        RasterJob<T> job{};
+        set_samples(s, outputs_.volume(s, target), job);
+        curves_.write(pairs_, job, owners,
+                      s == 0 ? &pairs_.counters()->work.straightened : nullptr);
+      });
+    }
+    curves_.write(pairs_, owners, fields);
   }
 
   /// Labels of all sources by Gaussian weights.
@@ -348,6 +364,7 @@ class WarpPipeline : public WarpBackend {
   WarpTotals<Exec> totals_;
   WarpRoundings<Exec> roundings_;
   WarpExtension<Exec> extension_;
+  WarpCurves<Exec> curves_;
   CounterTotals<Exec> counter_totals_;
   CellRaster<Exec> cell_raster_;
   OverlapStage<Exec> overlap_;

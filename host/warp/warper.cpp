@@ -1,5 +1,6 @@
 /// @file warper.cpp
 /// The public calls: checks of all arguments, the queue of steps, the report.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "host/base/region_grid.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/warp/backend_choice.hpp"
+#include "host/warp/curve_checks.hpp"
 #include "host/warp/hex_split.hpp"
 #include "host/warp/step_queue.hpp"
 #include "host/warp/transform_checks.hpp"
@@ -87,6 +89,20 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   return plan;
 }
 
+WarpPlan make_plan(std::span<const VolumeView> sources,
+                   const CurvedMesh& mesh,
+                   const WarpOptions& options) {
+  WarpPlan plan = make_plan(sources, mesh.mesh, options);
+  check_mid_nodes(mesh.mesh, mesh.mid_nodes);
+  if (std::ranges::all_of(mesh.mid_nodes, [](const MidNodes& m) { return m == no_mid_nodes; })) {
+    return plan;
+  }
+  const std::string refusal = curves_refusal(options, false);
+  if (!refusal.empty()) throw std::invalid_argument(refusal);
+  plan.mid_nodes = mesh.mid_nodes;
+  return plan;
+}
+
 void check_memory_space(const WarpPlan& plan, Backend backend) {
   for (const VolumeView& source : plan.sources) {
     if (source.memory == Memory::device && backend != Backend::cuda) {
@@ -127,6 +143,9 @@ void check_step(const WarpPlan& plan,
         "target: the forward field is on the source grid, which the output grid is not; leave out "
         "output_grid or the field");
   }
+  if (target.fields.forward != nullptr && !plan.mid_nodes.empty()) {
+    throw std::invalid_argument("target: " + curves_refusal(plan.options, true));
+  }
   const bool on_device = deformed.memory == Memory::device || target.memory == Memory::device ||
                          target.stream != nullptr;
   if (on_device && backend != Backend::cuda) {
@@ -161,19 +180,33 @@ struct Warper::State {
   WarpPlan plan;
   Report report;
   std::optional<StepQueue> queue;
+
+  /// Chooses and makes the back end of the plan.
+  void start() {
+    const WarpOptions& options = plan.options;
+    std::tie(report.backend, report.backend_reason) =
+        choose_backend(options.backend, options.device);
+    check_memory_space(plan, report.backend);
+    queue.emplace(make_backend(report.backend, plan));
+    report.version = TETWARP_VERSION;
+    report.device = queue->backend().device();
+    report.threads = queue->backend().threads();
+    report.position_quantum = 1.0 / static_cast<double>(quanta_per_voxel);
+  }
 };
 
 Warper::Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options)
     : state_(std::make_unique<State>()) {
   state_->plan = make_plan(sources, mesh, options);
-  Report& report = state_->report;
-  std::tie(report.backend, report.backend_reason) = choose_backend(options.backend, options.device);
-  check_memory_space(state_->plan, report.backend);
-  state_->queue.emplace(make_backend(report.backend, state_->plan));
-  report.version = TETWARP_VERSION;
-  report.device = state_->queue->backend().device();
-  report.threads = state_->queue->backend().threads();
-  report.position_quantum = 1.0 / static_cast<double>(quanta_per_voxel);
+  state_->start();
+}
+
+Warper::Warper(std::span<const VolumeView> sources,
+               const CurvedMesh& mesh,
+               const WarpOptions& options)
+    : state_(std::make_unique<State>()) {
+  state_->plan = make_plan(sources, mesh, options);
+  state_->start();
 }
 
 Warper::Warper(const Volume& source, const Mesh& mesh, const WarpOptions& options)

@@ -78,6 +78,7 @@ void merge_cells(ImportedMesh& mesh) {
     array.data.resize(kept * row_size);
   }
   keep_firsts(tet_firsts, mesh.mesh.tets);
+  keep_firsts(tet_firsts, mesh.mid_nodes);
   keep_firsts(hex_firsts, mesh.mesh.hexes);
 }
 

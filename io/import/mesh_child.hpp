@@ -46,8 +46,8 @@ void exchange_members(Message& message, Value& value) {
 template <class Message>
 void exchange_members(Message& message, ImportedMesh& value) {
   // All members: a new one does not compile.
-  auto& [mesh, displacements, times, skipped, arrays, left_out, merged, triangles, moves_points] =
-      value;
+  auto& [mesh, displacements, times, skipped, arrays, left_out, merged, triangles, moves_points,
+         mid_nodes] = value;
   auto& [rest_positions, tets, hexes] = mesh;
   message(rest_positions);
   message(tets);
@@ -60,6 +60,7 @@ void exchange_members(Message& message, ImportedMesh& value) {
   message(merged);
   message(triangles);
   message(moves_points);
+  message(mid_nodes);
 }
 
 }  // namespace tetwarp

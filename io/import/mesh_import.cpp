@@ -18,6 +18,7 @@
 #include "io/h5/value_names.hpp"
 #include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"
+#include "io/import/split_cells.hpp"
 #include "io/nifti/nifti_components.hpp"
 #include "io/volume/mesh_arrays.hpp"
 
@@ -72,6 +73,7 @@ void check_imported(const std::string& path, ImportedMesh& imported, bool needs_
   }
   try {
     if (imported.mesh.cell_count() > 0) check_mesh(imported.mesh);
+    check_mid_nodes(imported.mesh, imported.mid_nodes);
   } catch (const std::invalid_argument& error) {
     throw IoError(path, "", std::string(error.what()) + ": damaged, write it again");
   }
@@ -94,7 +96,8 @@ void check_imported(const std::string& path, ImportedMesh& imported, bool needs_
   if (imported.displacements.size() != imported.times.size()) {
     throw IoError(path, "", "has other numbers of times and of steps: damaged, write it again");
   }
-  const std::vector<bool> used = nodes_of_cells(imported.mesh, imported.triangles);
+  const std::vector<bool> used =
+      nodes_of_cells(imported.mesh, imported.triangles, imported.mid_nodes);
   for (std::size_t step = 0; step < imported.times.size(); ++step) {
     std::vector<Point3>& rows = imported.displacements[step];
     if (rows.size() == node_count) clear_unused(used, rows);
@@ -138,6 +141,7 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   ImportedMesh mesh = read_mesh_in_child(path, options, limits_for(path, options.time_limit));
   check_imported(path, mesh, options.needs_solids);
   merge_cells(mesh);
+  if (!options.keeps_curved) split_curved_cells(mesh);
   drop_long_names(mesh);
   if (options.axes == Axes::lps) {
     turn(mesh.mesh.rest_positions);

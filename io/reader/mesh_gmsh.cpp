@@ -256,7 +256,7 @@ void add_step(const std::string& path,
                   "step " + std::to_string(step) + ": expected three components for every node");
   }
   std::vector<Point3> displacement(places.size());
-  std::vector<bool> lacks_data = nodes_of_cells(into.mesh, into.triangles);
+  std::vector<bool> lacks_data = nodes_of_cells(into.mesh, into.triangles, into.mid_nodes);
   for (std::size_t n = 0; n < tags.size; ++n) {
     check(path, data.sizes[n] >= 3, "lacks numbers of '" + name + "'");
     const double* const row = data.data[n];

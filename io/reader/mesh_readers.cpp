@@ -48,11 +48,6 @@ std::size_t node_count(CellShape shape) {
 }
 
 namespace {
-/// Corners of the tetrahedra between the nodes of a curved one: four at its corners, and four
-/// around the line between the middles of two opposite edges.
-constexpr std::size_t curved_parts[8][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3},
-                                            {4, 9, 5, 6}, {4, 9, 6, 7}, {4, 9, 7, 8}, {4, 9, 8, 5}};
-
 /// The nodes of a hexahedron, in VTK's order, that make it another cell.
 constexpr std::size_t hexahedron_nodes[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 constexpr std::size_t voxel_nodes[8] = {0, 1, 3, 2, 4, 5, 7, 6};
@@ -70,8 +65,11 @@ void add_kept_cell(CellShape shape,
     for (std::size_t n = 0; n < 8; ++n) hex[n] = nodes[order[n]];
     numbers.hexes.push_back(number);
   };
-  const auto add_tet = [&](const std::size_t(&order)[4]) {
-    into.mesh.tets.push_back({nodes[order[0]], nodes[order[1]], nodes[order[2]], nodes[order[3]]});
+  const auto add_tet = [&](const MidNodes& mid_nodes) {
+    const bool has_ten = mid_nodes != no_mid_nodes;
+    if (has_ten) into.mid_nodes.resize(into.mesh.tets.size(), no_mid_nodes);
+    if (has_ten || !into.mid_nodes.empty()) into.mid_nodes.push_back(mid_nodes);
+    into.mesh.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
     numbers.tets.push_back(number);
   };
   switch (shape) {
@@ -81,10 +79,9 @@ void add_kept_cell(CellShape shape,
       into.triangles.push_back({nodes[0], nodes[1], nodes[2]});
       return;
     case CellShape::tetrahedron:
-      return add_tet({0, 1, 2, 3});
+      return add_tet(no_mid_nodes);
     case CellShape::curved_tetrahedron:
-      for (const auto& part : curved_parts) add_tet(part);
-      return;
+      return add_tet({nodes[4], nodes[5], nodes[6], nodes[7], nodes[8], nodes[9]});
     case CellShape::hexahedron:
       return add_hex(hexahedron_nodes);
     case CellShape::voxel:

@@ -50,7 +50,7 @@ enum class CellShape {
   other,     ///< not kept
   triangle,  ///< kept beside the mesh
   tetrahedron,
-  curved_tetrahedron,  ///< of ten nodes; becomes the eight tetrahedra between them
+  curved_tetrahedron,  ///< of ten nodes
   hexahedron,
   voxel,   ///< a hexahedron in another order
   wedge,   ///< becomes a hexahedron with two edges of no length, which has the same map

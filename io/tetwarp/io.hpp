@@ -145,7 +145,8 @@ struct MeshReadOptions {
   std::int64_t rest_step = 0;  ///< where points move: the step whose points are the rest positions
   /// Another mesh file with as many nodes, whose points are the rest positions.
   std::optional<std::string> rest_file = {};
-  MeshImportOptions import = {};  ///< for files of Gmsh and VTK; its axes also for `rest_file`
+  /// For files of Gmsh and VTK; its axes also for `rest_file`, and `keeps_curved` for all.
+  MeshImportOptions import = {};
 };
 
 /// A mesh of tetrahedra and hexahedra with its deformation: a VTKHDF UnstructuredGrid, or what
@@ -164,6 +165,8 @@ class TETWARP_IO_EXPORT MeshReader {
 
   const MeshHeader& header() const;
   const Mesh& mesh() const;  ///< rest positions and checked cells
+  /// With MeshImportOptions::keeps_curved those of CurvedMesh; empty: no cell has ten nodes.
+  const std::vector<MidNodes>& mid_nodes() const;
 
   /// Deformed positions of one step, one per node [world].
   std::vector<Point3> read_step(std::int64_t step) const;
@@ -271,6 +274,12 @@ TETWARP_IO_EXPORT std::array<std::int64_t, 3> block_step(const Grid& grid,
 /// @param arrays         other arrays of nodes and cells, the same at every step
 TETWARP_IO_EXPORT void write_mesh(const std::string& path,
                                   const Mesh& mesh,
+                                  const std::vector<std::vector<Point3>>& displacements = {},
+                                  const std::vector<double>& times = {},
+                                  const std::vector<MeshArray>& arrays = {});
+/// The same with tetrahedra of ten nodes.
+TETWARP_IO_EXPORT void write_mesh(const std::string& path,
+                                  const CurvedMesh& mesh,
                                   const std::vector<std::vector<Point3>>& displacements = {},
                                   const std::vector<double>& times = {},
                                   const std::vector<MeshArray>& arrays = {});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <tetwarp/axes.hpp>
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/io_export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/mesh_array.hpp>
@@ -30,6 +31,8 @@ struct MeshImportOptions {
   /// of surfaces are read, too. Of these, points at the same place are joined where the surface is
   /// open.
   bool needs_solids = true;
+  /// Whether tetrahedra of ten nodes stay what they are; else they become eight straight ones.
+  bool keeps_curved = false;
 };
 
 /// The content of a file, in the form that write_mesh() takes.
@@ -48,6 +51,8 @@ struct ImportedMesh {
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into rest_positions
   /// Whether the displacements are those of points that move with the steps, no array of the file.
   bool moves_points = false;
+  /// With MeshImportOptions::keeps_curved those of CurvedMesh; empty: no cell has ten nodes.
+  std::vector<MidNodes> mid_nodes = {};
 };
 
 /// True for names that end in .msh, .vtu, .vtk, .vtm, .pvd, .series, .e, .exo or .ex2, also in
@@ -61,10 +66,9 @@ TETWARP_IO_EXPORT bool has_surface_extension(const std::string& path);
 /// chosen by the end of the name. A '*' in the name stands for any letters: the files are the steps
 /// of one mesh, in order of the numbers in their names.
 ///
-/// A tetrahedron of ten nodes becomes eight straight ones between them: a position is off by at
-/// most a quarter of the sum of the distances of its six mid nodes from the middles of their edges.
-/// A wedge becomes a hexahedron with repeated nodes, and so does a pyramid: their maps are the
-/// same.
+/// A tetrahedron of ten nodes becomes eight straight ones between them, see split_curved(), unless
+/// it is kept. A wedge becomes a hexahedron with repeated nodes, and so does a pyramid: their maps
+/// are the same.
 ///
 /// VTK and Gmsh crash on some damaged files. They are in a program of their own, tetwarp-read,
 /// which sends the mesh back: a crash, an endless loop or an explosion of memory ends that program

@@ -3,6 +3,8 @@
 #include <tetwarp/transform_file.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <tetwarp/io.hpp>
@@ -28,6 +30,49 @@ const char* what_of(const Transform& transform) {
   if (std::holds_alternative<BSplineTransform>(transform)) return "B-spline";
   return "composite";
 }
+/// @throws IoError  naming the first voxel of a region whose displacement is not finite
+void check_displacement(const std::string& path, const Region& region, const float* displacement) {
+  const std::int64_t count = 3 * region.voxel_count();
+  std::uint32_t largest = 0;  // bits of sizes have their order, those that are not finite last
+  for (std::int64_t n = 0; n < count; ++n) {
+    largest = std::max(largest, std::bit_cast<std::uint32_t>(displacement[n]) & 0x7fffffff);
+  }
+  if (largest < 0x7f800000) return;
+  const auto is_finite = [](float number) { return std::isfinite(number); };
+  std::int64_t voxel =
+      (std::find_if_not(displacement, displacement + count, is_finite) - displacement) / 3;
+  std::string place;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t size = region.end[axis] - region.begin[axis];
+    place += (axis > 0 ? ", " : "") + std::to_string(region.begin[axis] + voxel % size);
+    voxel /= size;
+  }
+  throw IoError(path, "",
+                "its displacement is not finite at voxel (" + place +
+                    "); correct it, or write 0 where there is none");
+}
+
+TransformParts opened(const std::string& path, const TransformReadOptions& options) {
+  if (!has_transform_name(path)) {
+    switch (kind_of(path)) {
+      case FileKind::nifti:
+        return is_fsl_field(read_nifti_header(path), options) ? open_fsl_field(path, options)
+                                                              : open_nifti_field(path, options);
+      case FileKind::image:
+        return open_image_field(path, options);
+      case FileKind::hdf5:
+        break;
+      default:
+        return open_volume_field(path);
+    }
+  }
+  TransformParts parts = transform_of(path, has_extension(path, ".mat") ? read_itk_matlab(path)
+                                            : has_transform_name(path)  ? read_itk_text(path)
+                                                                        : read_itk_hdf5(path));
+  parts.file.convention = std::string(what_of(parts.file.transform)) + " of ITK along LPS axes";
+  return parts;
+}
+
 }  // namespace
 
 bool is_transform_file(const std::string& path, const TransformReadOptions& options) {
@@ -69,23 +114,14 @@ TransformFile read_transform(const std::string& path, const TransformReadOptions
 }
 
 TransformParts open_transform(const std::string& path, const TransformReadOptions& options) {
-  if (!has_transform_name(path)) {
-    switch (kind_of(path)) {
-      case FileKind::nifti:
-        return is_fsl_field(read_nifti_header(path), options) ? open_fsl_field(path, options)
-                                                              : open_nifti_field(path, options);
-      case FileKind::image:
-        return open_image_field(path, options);
-      case FileKind::hdf5:
-        break;
-      default:
-        return open_volume_field(path);
-    }
+  TransformParts parts = opened(path, options);
+  for (FieldReader& field : parts.fields) {
+    if (!field.read) continue;  // of a transform that is no field
+    field.read = [path, read = std::move(field.read)](const Region& region, float* displacement) {
+      read(region, displacement);
+      check_displacement(path, region, displacement);
+    };
   }
-  TransformParts parts = transform_of(path, has_extension(path, ".mat") ? read_itk_matlab(path)
-                                            : has_transform_name(path)  ? read_itk_text(path)
-                                                                        : read_itk_hdf5(path));
-  parts.file.convention = std::string(what_of(parts.file.transform)) + " of ITK along LPS axes";
   return parts;
 }
 

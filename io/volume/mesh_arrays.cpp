@@ -34,16 +34,20 @@ bool is_free_name(const std::string& name) {
 }
 
 std::vector<bool> nodes_of_cells(const Mesh& mesh,
-                                 const std::vector<std::array<std::int32_t, 3>>& triangles) {
+                                 const std::vector<std::array<std::int32_t, 3>>& triangles,
+                                 const std::vector<MidNodes>& mid_nodes) {
   std::vector<bool> used(mesh.rest_positions.size());
   const auto mark = [&](const auto& cells) {
     for (const auto& cell : cells) {
-      for (const std::int32_t node : cell) used[static_cast<std::size_t>(node)] = true;
+      for (const std::int32_t node : cell) {
+        if (node >= 0) used[static_cast<std::size_t>(node)] = true;  // -1: no middle nodes
+      }
     }
   };
   mark(mesh.tets);
   mark(mesh.hexes);
   mark(triangles);
+  mark(mid_nodes);
   return used;
 }
 

@@ -35,7 +35,8 @@ bool is_free_name(const std::string& name);
 
 /// Which nodes cells and triangles have. @pre  their indices are checked
 std::vector<bool> nodes_of_cells(const Mesh& mesh,
-                                 const std::vector<std::array<std::int32_t, 3>>& triangles = {});
+                                 const std::vector<std::array<std::int32_t, 3>>& triangles = {},
+                                 const std::vector<MidNodes>& mid_nodes = {});
 
 /// Makes displacements that are not finite 0 at nodes of no cell, where they move nothing.
 void clear_unused(const std::vector<bool>& used, std::vector<Point3>& displacement);

@@ -22,11 +22,14 @@ struct MeshReader::State {
   ImportedSteps imported;
   MeshHeader header;
   Mesh mesh;
+  std::vector<MidNodes> mid_nodes;  ///< those that the reader keeps
+  bool keeps_curved;
   std::vector<MeshPart> parts;  ///< that `mesh` was read from
   std::vector<std::size_t> tet_firsts,
       hex_firsts;  ///< of the cells of the file; see first_copies()
 
   void open_vtkhdf(const MeshReadOptions& options);
+  void take_cells(MeshCells cells, Mesh& into, std::vector<MidNodes>& mids) const;
   void import(const MeshReadOptions& options);
   std::vector<Point3> vectors_of(std::int64_t step) const;
 };
@@ -80,23 +83,36 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
   input.check_step(options.rest_step);
   parts = file->parts_of(options.rest_step);
   MeshCells cells = file->read_cells(options.rest_step);
-  mesh.tets = std::move(cells.tets);
-  mesh.hexes = std::move(cells.hexes);
   mesh.rest_positions = file->read_points(options.rest_step);
-  tet_firsts = first_copies(mesh.rest_positions, mesh.tets, SameCells::places);
-  hex_firsts = first_copies(mesh.rest_positions, mesh.hexes, SameCells::places);
-  header.merged =
-      merged_text(copy_count(tet_firsts) + copy_count(hex_firsts), mesh.cell_count(), "cells");
-  keep_firsts(tet_firsts, mesh.tets);
-  keep_firsts(hex_firsts, mesh.hexes);
+  tet_firsts = first_copies(mesh.rest_positions, cells.tets, SameCells::places);
+  hex_firsts = first_copies(mesh.rest_positions, cells.hexes, SameCells::places);
+  header.merged = merged_text(copy_count(tet_firsts) + copy_count(hex_firsts),
+                              cells.tets.size() + cells.hexes.size(), "cells");
   if (header.merged.empty()) tet_firsts = hex_firsts = {};
   header.not_read = file->not_read();
   add_skipped(cells.skipped, header.not_read);
+  take_cells(std::move(cells), mesh, mid_nodes);
   header.times = input.is_temporal() ? input.times : std::vector<double>{0.0};
   header.has_displacement = file->has_displacement();
   header.group_names = file->group_names();
   for (std::size_t step = 0; step < input.times.size(); ++step) {
     header.has_moving_points |= file->parts_of(static_cast<std::int64_t>(step)) != parts;
+  }
+}
+
+/// Cells of a step without copies, those of ten nodes kept or divided.
+void MeshReader::State::take_cells(MeshCells cells, Mesh& into, std::vector<MidNodes>& mids) const {
+  if (cells.tets.size() == tet_firsts.size()) {
+    keep_firsts(tet_firsts, cells.mid_nodes);
+    keep_firsts(tet_firsts, cells.tets);
+  }
+  if (cells.hexes.size() == hex_firsts.size()) keep_firsts(hex_firsts, cells.hexes);
+  into.tets = std::move(cells.tets);
+  into.hexes = std::move(cells.hexes);
+  if (keeps_curved || cells.mid_nodes.empty()) {
+    mids = std::move(cells.mid_nodes);
+  } else {
+    into = split_curved({std::move(into), std::move(cells.mid_nodes)});
   }
 }
 
@@ -109,6 +125,7 @@ void MeshReader::State::import(const MeshReadOptions& options) {
                       (whole.moves_points ? "" : ": its points do not move, --rest-step is 0"));
   }
   mesh = std::move(whole.mesh);
+  mid_nodes = std::move(whole.mid_nodes);
   imported.displacements = std::move(whole.displacements);
   header.has_displacement = !imported.displacements.empty() && !whole.moves_points;
   header.has_moving_points = whole.moves_points;
@@ -142,10 +159,10 @@ std::vector<Point3> MeshReader::State::vectors_of(std::int64_t step) const {
   }
   file->file().check_step(step);
   if (!is_same_topology(parts, file->parts_of(step))) {
-    MeshCells cells = file->read_cells(step);
-    if (cells.tets.size() == tet_firsts.size()) keep_firsts(tet_firsts, cells.tets);
-    if (cells.hexes.size() == hex_firsts.size()) keep_firsts(hex_firsts, cells.hexes);
-    if (cells.tets != mesh.tets || cells.hexes != mesh.hexes) {
+    Mesh cells;
+    std::vector<MidNodes> mids;
+    take_cells(file->read_cells(step), cells, mids);
+    if (cells.tets != mesh.tets || cells.hexes != mesh.hexes || mids != mid_nodes) {
       throw IoError(path, "",
                     "step " + std::to_string(step) + " has other cells than the rest step");
     }
@@ -153,7 +170,7 @@ std::vector<Point3> MeshReader::State::vectors_of(std::int64_t step) const {
   if (!header.has_displacement) return file->read_points(step);
   std::vector<Point3> displacement = file->read_displacement(step);
   if (displacement.size() == mesh.rest_positions.size()) {
-    clear_unused(nodes_of_cells(mesh), displacement);
+    clear_unused(nodes_of_cells(mesh, {}, mid_nodes), displacement);
   }
   file->check_displacement(displacement);
   return displacement;
@@ -164,6 +181,7 @@ MeshReader::MeshReader(const std::string& path, const MeshReadOptions& options) 
   state_ = std::make_unique<State>();
   State& state = *state_;
   state.path = path;
+  state.keeps_curved = options.import.keeps_curved;
   is_imported(path) ? state.import(options) : state.open_vtkhdf(options);
   Mesh& mesh = state.mesh;
   if (options.rest_file) {
@@ -184,6 +202,10 @@ const MeshHeader& MeshReader::header() const {
 }
 const Mesh& MeshReader::mesh() const {
   return state_->mesh;
+}
+
+const std::vector<MidNodes>& MeshReader::mid_nodes() const {
+  return state_->mid_nodes;
 }
 
 std::vector<Point3> MeshReader::read_step(std::int64_t step) const {

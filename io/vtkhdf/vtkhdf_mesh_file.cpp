@@ -58,6 +58,20 @@ int dimension_of(std::int64_t type) {
   return std::ranges::find(surfaces, type) != std::end(surfaces) ? 2 : 3;
 }
 
+/// Number of nodes of a cell that is read.
+std::int64_t nodes_of_type(std::int64_t type) {
+  switch (type) {
+    case vtk_triangle:
+      return 3;
+    case vtk_tetra:
+      return 4;
+    case vtk_quadratic_tetra:
+      return 10;
+    default:
+      return 8;
+  }
+}
+
 /// Throws unless rows [first, first + count) exist.
 void check_rows(const h5::Dataset& dataset, std::int64_t first, std::int64_t count) {
   if (first >= 0 && count >= 0 && first <= dataset.rows() && count <= dataset.rows() - first)
@@ -282,13 +296,17 @@ std::vector<std::int64_t> MeshFile::read_cell_types(const MeshPart& part,
   std::vector<std::int64_t> types = read_column(types_, part.first_cell, part.cell_count);
   for (std::size_t cell = 0; cell < types.size(); ++cell) {
     const std::int64_t type = types[cell];
-    if (is_solid ? type == vtk_tetra || type == vtk_hexahedron : type == vtk_triangle) continue;
+    const bool is_kept =
+        is_solid ? type == vtk_tetra || type == vtk_hexahedron || type == vtk_quadratic_tetra
+                 : type == vtk_triangle;
+    if (is_kept) continue;
     const int dimension = dimension_of(type);
     if (is_solid ? dimension == 3 : dimension == 2) {
       types_.fail("cell " + std::to_string(first_cell + static_cast<std::int64_t>(cell)) +
                   " has type " + cell_type_name(type) +
-                  (is_solid ? ", expected tetrahedra (10, VTK_TETRA) and hexahedra (12, "
-                              "VTK_HEXAHEDRON) only; split the cells into tetrahedra"
+                  (is_solid ? ", expected tetrahedra (10, VTK_TETRA, or 24, VTK_QUADRATIC_TETRA) "
+                              "and hexahedra (12, VTK_HEXAHEDRON) only; split the cells into "
+                              "tetrahedra"
                             : ", expected triangles (5, VTK_TRIANGLE) only; extract the surface"));
     }
     ++cells.skipped[cell_type_name(type)];
@@ -304,7 +322,7 @@ void MeshFile::read_part_cells(const MeshPart& part,
                                MeshCells& cells) const {
   const std::vector<std::int64_t> types = read_cell_types(part, first_cell, choice, cells);
   const std::string sizes_text = choice == CellChoice::solids
-                                     ? "4 for each tetrahedron, 8 for each hexahedron"
+                                     ? "4 or 10 for each tetrahedron, 8 for each hexahedron"
                                      : "3 for each triangle";
   const std::vector<std::int64_t> offsets =
       read_column(offsets_, part.first_offset, part.cell_count + 1);
@@ -318,9 +336,7 @@ void MeshFile::read_part_cells(const MeshPart& part,
     if (cell == types.size()) break;
     const std::int64_t type = types[cell];
     expected = type == skipped_type ? std::max(expected, offsets[cell + 1])
-                                    : expected + (type == vtk_triangle ? 3
-                                                  : type == vtk_tetra  ? 4
-                                                                       : 8);
+                                    : expected + nodes_of_type(type);
   }
   if (part.id_count != expected) {
     connectivity_.fail("NumberOfConnectivityIds is " + std::to_string(part.id_count) + " for " +
@@ -330,10 +346,10 @@ void MeshFile::read_part_cells(const MeshPart& part,
   const std::vector<std::int64_t> ids = read_column(connectivity_, part.first_id, part.id_count);
   for (std::size_t cell = 0; cell < types.size(); ++cell) {
     const auto first = static_cast<std::size_t>(offsets[cell]);
-    const auto take = [&](auto& list) {
+    const auto take = [&](auto& list, std::size_t skipped = 0) {
       auto& nodes = list.emplace_back();
       for (std::size_t corner = 0; corner < nodes.size(); ++corner) {
-        const std::int64_t node = ids[first + corner];
+        const std::int64_t node = ids[first + skipped + corner];
         if (node < 0 || node >= part.node_count) {
           connectivity_.fail("cell " +
                              std::to_string(first_cell + static_cast<std::int64_t>(cell)) +
@@ -344,7 +360,14 @@ void MeshFile::read_part_cells(const MeshPart& part,
       }
     };
     if (types[cell] == vtk_triangle) take(cells.triangles);
-    if (types[cell] == vtk_tetra) take(cells.tets);
+    const bool has_ten = types[cell] == vtk_quadratic_tetra;
+    if (has_ten) cells.mid_nodes.resize(cells.tets.size(), no_mid_nodes);
+    if (has_ten || types[cell] == vtk_tetra) take(cells.tets);
+    if (has_ten) {
+      take(cells.mid_nodes, 4);
+    } else if (types[cell] == vtk_tetra && !cells.mid_nodes.empty()) {
+      cells.mid_nodes.push_back(no_mid_nodes);
+    }
     if (types[cell] == vtk_hexahedron) take(cells.hexes);
   }
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/volume.hpp>
 
 #include "io/h5/h5.hpp"
@@ -18,6 +19,7 @@ namespace tetwarp {
 constexpr std::uint8_t vtk_triangle = 5;
 constexpr std::uint8_t vtk_tetra = 10;
 constexpr std::uint8_t vtk_hexahedron = 12;
+constexpr std::uint8_t vtk_quadratic_tetra = 24;
 
 /// The rows of one part of one step: first row and number in each dataset.
 struct MeshPart {
@@ -43,6 +45,7 @@ struct MeshCells {
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 8>> hexes;
   std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<MidNodes> mid_nodes;  ///< of tets, as of CurvedMesh; empty: none has ten nodes
   /// Number of cells of fewer than three dimensions beside solids, of all others beside triangles,
   /// by their kind.
   std::map<std::string, std::int64_t> skipped;

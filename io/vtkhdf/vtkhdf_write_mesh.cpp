@@ -1,5 +1,6 @@
 /// @file vtkhdf_write_mesh.cpp
 /// Writing VTKHDF UnstructuredGrid: static topology and rest points, displacements over steps.
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -18,10 +19,12 @@ namespace tetwarp {
 namespace {
 void check_arguments(const std::string& path,
                      const Mesh& mesh,
+                     const std::vector<MidNodes>& mid_nodes,
                      const std::vector<std::vector<Point3>>& displacements,
                      const std::vector<double>& times) {
   try {
     check_mesh(mesh);
+    check_mid_nodes(mesh, mid_nodes);
   } catch (const std::invalid_argument& error) {
     throw IoError(path, "/VTKHDF", error.what());
   }
@@ -70,9 +73,18 @@ void check_arrays(const std::string& path,
   }
 }
 
-CellRows cells_of(const Mesh& mesh) {
+CellRows cells_of(const Mesh& mesh, const std::vector<MidNodes>& mid_nodes) {
   CellRows cells;
-  cells.add<4>(vtk_tetra, mesh.tets);
+  for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
+    const auto& corners = mesh.tets[tet];
+    if (mid_nodes.empty() || mid_nodes[tet] == no_mid_nodes) {
+      cells.add<4>(vtk_tetra, {&corners, 1});
+      continue;
+    }
+    std::array<std::int32_t, 10> ten;
+    std::ranges::copy(mid_nodes[tet], std::ranges::copy(corners, ten.begin()).out);
+    cells.add<10>(vtk_quadratic_tetra, {&ten, 1});
+  }
   cells.add<8>(vtk_hexahedron, mesh.hexes);
   return cells;
 }
@@ -136,21 +148,21 @@ void write_steps(const h5::Object& root,
   }
   h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
 }
-}  // namespace
 
-void write_mesh(const std::string& path,
-                const Mesh& mesh,
-                const std::vector<std::vector<Point3>>& displacements,
-                const std::vector<double>& times,
-                const std::vector<MeshArray>& arrays) {
+void write_cells_and_steps(const std::string& path,
+                           const Mesh& mesh,
+                           const std::vector<MidNodes>& mid_nodes,
+                           const std::vector<std::vector<Point3>>& displacements,
+                           const std::vector<double>& times,
+                           const std::vector<MeshArray>& arrays) {
   const h5::Silence silence;
-  check_arguments(path, mesh, displacements, times);
+  check_arguments(path, mesh, mid_nodes, displacements, times);
   check_arrays(path, mesh.rest_positions.size(), mesh.cell_count(), arrays);
   const bool is_temporal = !displacements.empty();
   VtkhdfOutput output(path, "UnstructuredGrid", is_temporal);
   {
     const h5::Object& root = output.root();
-    write_grid(root, mesh.rest_positions, cells_of(mesh));
+    write_grid(root, mesh.rest_positions, cells_of(mesh, mid_nodes));
     const h5::Object cell_data = h5::create_group(root, "CellData");
     h5::create_group(root, "FieldData");
     const h5::Object point_data = h5::create_group(root, "PointData");
@@ -168,6 +180,24 @@ void write_mesh(const std::string& path,
     }
   }
   output.finish();
+}
+
+}  // namespace
+
+void write_mesh(const std::string& path,
+                const Mesh& mesh,
+                const std::vector<std::vector<Point3>>& displacements,
+                const std::vector<double>& times,
+                const std::vector<MeshArray>& arrays) {
+  write_cells_and_steps(path, mesh, {}, displacements, times, arrays);
+}
+
+void write_mesh(const std::string& path,
+                const CurvedMesh& mesh,
+                const std::vector<std::vector<Point3>>& displacements,
+                const std::vector<double>& times,
+                const std::vector<MeshArray>& arrays) {
+  write_cells_and_steps(path, mesh.mesh, mesh.mid_nodes, displacements, times, arrays);
 }
 
 void write_surface(const std::string& path,

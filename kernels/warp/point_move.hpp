@@ -3,9 +3,11 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/base/atomic_add.hpp"
 #include "kernels/base/hex_view.hpp"
 #include "kernels/base/vec3.hpp"
 #include "kernels/base/view.hpp"
+#include "kernels/warp/curve_map.hpp"
 #include "kernels/warp/face_sign.hpp"
 #include "kernels/warp/hex_map.hpp"
 
@@ -150,6 +152,59 @@ TETWARP_HD_RARE Vec3 hex_motion(const MovedNodes& nodes,
   return vec3_of(mean);
 }
 
+/// How a point moves with a tetrahedron of ten nodes: by the shape functions at the coordinates
+/// that Newton's method finds from those in the straight tetrahedron.
+/// @returns false where the curved map has none
+TETWARP_HD_RARE bool curve_motion(const MovedNodes& nodes,
+                                  const std::int32_t* tet,
+                                  const std::int32_t* mid_nodes,
+                                  const PointWeights& weights,
+                                  const Vec3& x,
+                                  Vec3& motion) {
+  const Vec3 origin = vec3_at(nodes.from, tet[0]);
+  double size = 0;
+  for (int a = 1; a < 4; ++a) {
+    const Vec3 edge = minus(vec3_at(nodes.from, tet[a]), origin);
+    for (int axis = 0; axis < 3; ++axis) size = max_of(size, fabs(edge[axis]));
+  }
+  constexpr double voxels = 64;  // along an edge: tolerances of invert_curve() are in voxels
+  const double scale = size > 0 ? voxels / size : 0;
+  CurveNodes from, moved;
+  double target[3], u[3] = {weights.of[1], weights.of[2], weights.of[3]}, mean[3];
+  for (int n = 0; n < 10; ++n) {
+    const std::int32_t node = n < 4 ? tet[n] : mid_nodes[n - 4];
+    const Vec3 place = times(scale, minus(vec3_at(nodes.from, node), origin));
+    const Vec3 step = nodes.displacement(node);
+    for (int axis = 0; axis < 3; ++axis) {
+      from.at[n][axis] = place[axis];
+      moved.at[n][axis] = step[axis];
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) target[axis] = scale * (x[axis] - origin[axis]);
+  if (!invert_curve(curve_terms(from), target, u)) return false;
+  Matrix3 gradient;
+  map_curve(curve_terms(moved), u, mean, gradient);
+  motion = vec3_of(mean);
+  return true;
+}
+
+/// Whether the middle nodes are within a quantum of the middles of their edges along each axis.
+TETWARP_HD bool is_straight(const IndexFromWorld& map,
+                            View<const double> positions,
+                            const std::int32_t* tet,
+                            const std::int32_t* mid_nodes) {
+  constexpr std::int64_t no_frame[3] = {0, 0, 0};
+  Node nodes[10];
+  std::int32_t numbers[10];
+  for (int n = 0; n < 10; ++n) {
+    numbers[n] = n;
+    const std::int32_t node = n < 4 ? tet[n] : mid_nodes[n - 4];
+    nodes[n] = quantized(map, positions.data + 3 * std::int64_t{node}, no_frame);
+    if (nodes[n].x[0] == bad_node) return false;
+  }
+  return is_straight(View<const Node>{nodes, 10}, numbers, numbers + 4);
+}
+
 /// One index = one point; any order.
 struct PointMoveOp {
   IndexFromWorld map;
@@ -158,9 +213,12 @@ struct PointMoveOp {
   View<const Node> rounded;        ///< nodes where the points are [quantum]
   View<const std::int32_t> tets;   ///< [4 * tet_count]
   HexView hexes;
+  CurveView curves;
   MovedNodes nodes;
   View<double> points;        ///< in and out, [3 * point_count], world
   View<std::int32_t> owners;  ///< out, [point_count], cell or -1
+  /// Points in tetrahedra of ten nodes whose curved map has no inverse there are added to it.
+  View<std::int64_t> straightened;
 
   /// The tetrahedron of the lowest number that contains the point; -1: none.
   TETWARP_HD std::int64_t owner_of(const Node& point) const {
@@ -194,9 +252,21 @@ struct PointMoveOp {
     const std::int32_t* const tet = tets.data + 4 * t;
     const Vec3 x = vec3_of(at);
     const PointWeights weights(nodes, tet, x);
-    const Vec3 motion = hexes.has(t) ? hex_motion(nodes, hexes.nodes_of(t), tet, weights, x)
-                                     : tet_motion(nodes, tet, weights);
+    Vec3 motion = hexes.has(t) ? hex_motion(nodes, hexes.nodes_of(t), tet, weights, x)
+                               : tet_motion(nodes, tet, weights);
+    if (curves.has(t)) set_curve_motion(t, weights, x, motion);
     for (int axis = 0; axis < 3; ++axis) at[axis] = x[axis] + motion[axis];
+  }
+
+ private:
+  /// @param motion  in: that of the straight tetrahedron
+  TETWARP_HD_RARE void set_curve_motion(std::int64_t t,
+                                        const PointWeights& weights,
+                                        const Vec3& x,
+                                        Vec3& motion) const {
+    const std::int32_t *const tet = tets.data + 4 * t, *const mid = curves.nodes_of(t);
+    if (is_straight(map, nodes.from, tet, mid) && is_straight(map, nodes.to, tet, mid)) return;
+    if (!curve_motion(nodes, tet, mid, weights, x, motion)) atomic_add(&straightened[0], 1);
   }
 };
 
@@ -206,8 +276,8 @@ struct PointMoveOp {
 /// @param body  input and output, see PointMoveOp
 ///
 /// Determinism: owners are exact; places within 2^-48 of the cell's size and motion between back
-/// ends, in hexahedra within 2^-36. Cost: about four tetrahedra tested per point, 128 bytes each.
-/// Source: ours.
+/// ends, in hexahedra and tetrahedra of ten nodes within 2^-36. Cost: about four tetrahedra tested
+/// per point, 128 bytes each. Source: ours.
 template <class Exec>
 void point_move(Exec& exec, const PointMoveOp& op) {
   exec.for_each("points/move", op.owners.size, op);

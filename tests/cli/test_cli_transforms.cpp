@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <tetwarp/io.hpp>
 #include <vector>
@@ -114,6 +115,33 @@ TEST_F(CliTransforms, OptionsOfMeshesAndBadFilesAreRefused) {
                 .err.find("has no inverse"),
             std::string::npos);
   EXPECT_FALSE(fs::exists(scene / "o.vtkhdf"));
+}
+
+TEST_F(CliTransforms, NumbersThatAreNotFiniteAreRefused) {
+  const auto refusal = [&](const std::string& file) {
+    const std::string text =
+        run({"warp", "volume.vtkhdf", file, "-o", "o.vtkhdf", "--outside", "identity"}, 1).err;
+    EXPECT_FALSE(fs::exists(scene / "o.vtkhdf"));
+    return text;
+  };
+  const std::string head = "#Insight Transform File V1.0\nTransform: AffineTransform_double_3_3\n";
+  write_text(scene / "a.tfm",
+             head + "Parameters: 1 0 0 0 1 0 0 nan 1 0 0 0\nFixedParameters: 0 0 0\n");
+  write_text(scene / "b.tfm",
+             head + "Parameters: 1 0 0 0 1 0 0 0 1 0 0 0\nFixedParameters: 0 inf 0\n");
+  Volume field =
+      make_volume(ramp_volume<float>().grid, PixelType::float32, 3, "tetwarp_displacement");
+  field.samples<float>()[3 * (12 * (10 * 5 + 4) + 2) + 1] = std::numeric_limits<float>::quiet_NaN();
+  write_volumes(scene / "field.vtkhdf", {&field});
+
+  EXPECT_NE(
+      refusal("a.tfm").find("a.tfm: AffineTransform_double_3_3: expected 12 finite parameters"),
+      std::string::npos);
+  EXPECT_NE(refusal("b.tfm").find(
+                "b.tfm: AffineTransform_double_3_3: expected 3 finite fixed parameters"),
+            std::string::npos);
+  EXPECT_NE(refusal("field.vtkhdf").find("its displacement is not finite at voxel (2, 4, 5)"),
+            std::string::npos);
 }
 
 TEST_F(CliTransforms, ReportsAndProvenanceReplaceNoOtherFile) {

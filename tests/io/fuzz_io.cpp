@@ -31,6 +31,7 @@
 #include "tests/io/fuzz_contact.hpp"
 #include "tests/io/fuzz_memory.hpp"
 #include "tests/io/fuzz_values.hpp"
+#include "tests/support/curved_scenes.hpp"
 #include "tests/support/io_files.hpp"
 
 namespace {
@@ -123,6 +124,7 @@ void write_seeds(const test::ScratchFolder& folder) {
   writer.finish();
   write_mesh(folder / "mesh", test::two_tets());
   write_mesh(folder / "moving", test::two_tets(), test::slides({0, 1, 2}));
+  write_mesh(folder / "curved", test::with_mid_nodes(test::two_tets()));
   write_nifti(folder / "v.nii", b);
   write_nifti(folder / "v.nii.gz", a);
   write_nifti(folder / "v2.nii", make_volume({.dims = {33000, 1, 1}}, PixelType::uint8));
@@ -194,8 +196,9 @@ constexpr std::array<const char*, 14> named_seeds = {
     "i.mgz",  "p.csv",       "p.fcsv",     "p.json", "t.tfm",      "b.tfm",     "t.mat"};
 
 std::vector<std::string> seed_names() {
-  std::vector<std::string> names = {"volume",   "packed", "temporal", "mesh", "moving", "v.nii",
-                                    "v.nii.gz", "v2.nii", "s.nii.gz", "itk",  "fsl.nii"};
+  std::vector<std::string> names = {"volume", "packed",   "temporal", "mesh",
+                                    "moving", "curved",   "v.nii",    "v.nii.gz",
+                                    "v2.nii", "s.nii.gz", "itk",      "fsl.nii"};
   names.insert(names.end(), test::contact_seeds.begin(), test::contact_seeds.end());
   names.insert(names.end(), named_seeds.begin(), named_seeds.end());
   return names;

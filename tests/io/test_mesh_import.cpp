@@ -13,6 +13,7 @@
 #include <tetwarp/warp.hpp>
 
 #include "io/import/merge_cells.hpp"
+#include "io/import/split_cells.hpp"
 #include "io/volume/mesh_arrays.hpp"
 #include "tests/support/mesh_files.hpp"
 
@@ -113,17 +114,61 @@ double volume6_of(const Mesh& mesh, const std::array<std::int32_t, 4>& tet) {
   return volume;
 }
 
+/// A straight tetrahedron of ten nodes, whose last two Gmsh has in the other order.
+std::string ten_nodes_of_vtk() {
+  return legacy_cells("0 0 0 2 0 0 0 2 0 0 0 2 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 0 1 1", 10,
+                      {{24, 10}});
+}
+std::string ten_nodes_of_gmsh() {
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n"
+         "5 1 0 0\n6 1 1 0\n7 0 1 0\n8 0 0 1\n9 0 1 1\n10 1 0 1\n$EndNodes\n$Elements\n1\n"
+         "1 11 2 0 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n";
+}
+
+TEST_F(MeshImport, KeepsTetrahedraOfTenNodesInTheOrderOfVtk) {
+  constexpr std::size_t ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  for (const auto& mesh : {imported("a.vtk", ten_nodes_of_vtk(), {.keeps_curved = true}),
+                           imported("b.msh", ten_nodes_of_gmsh(), {.keeps_curved = true})}) {
+    if (!mesh) continue;
+    ASSERT_EQ(mesh->mesh.tets.size(), 1U);
+    ASSERT_EQ(mesh->mid_nodes.size(), 1U);
+    const auto place = [&](std::int32_t node) {
+      return mesh->mesh.rest_positions[static_cast<std::size_t>(node)];
+    };
+    for (std::size_t e = 0; e < 6; ++e) {
+      const Point3 a = place(mesh->mesh.tets[0][ends[e][0]]);
+      const Point3 b = place(mesh->mesh.tets[0][ends[e][1]]);
+      EXPECT_EQ(place(mesh->mid_nodes[0][e]),
+                (Point3{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2}));
+    }
+  }
+}
+
+/// Rows of arrays are repeated for the parts.
+TEST(SplitCells, GivesPartsTheRowsOfTheirCell) {
+  ImportedMesh mesh;
+  mesh.mesh.rest_positions.resize(14);
+  mesh.mesh.tets = {{0, 1, 2, 3}, {0, 1, 2, 4}, {10, 11, 12, 13}};
+  mesh.mesh.hexes = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  mesh.mid_nodes = {no_mid_nodes, {4, 5, 6, 7, 8, 9}, no_mid_nodes};
+  add_numbers("group", true, {7, 8, 9, 5}, mesh);
+  add_numbers("original_node", false, std::vector<std::int64_t>(14, 1), mesh);
+
+  split_curved_cells(mesh);
+
+  EXPECT_TRUE(mesh.mid_nodes.empty());
+  EXPECT_EQ(mesh.mesh.tets.size(), 10U);
+  EXPECT_EQ(mesh.mesh.tets[1], (std::array<std::int32_t, 4>{0, 4, 6, 7}));
+  EXPECT_EQ(mesh.mesh.tets[9], (std::array<std::int32_t, 4>{10, 11, 12, 13}));
+  EXPECT_EQ(numbers_of(mesh.arrays[0]),
+            (std::vector<std::int64_t>{7, 8, 8, 8, 8, 8, 8, 8, 8, 9, 5}));
+  EXPECT_EQ(numbers_of(mesh.arrays[1]).size(), 14U);
+}
+
 /// The eight parts fill the cell, as the four nodes of its corners do, in their orientation.
 TEST_F(MeshImport, CutsTetrahedraOfTenNodesAtTheirNodes) {
-  const auto vtk = imported(
-      "a.vtk",
-      legacy_cells("0 0 0 2 0 0 0 2 0 0 0 2 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 0 1 1", 10, {{24, 10}}));
-  const auto gmsh = imported(
-      "b.msh",
-      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n"
-      "5 1 0 0\n6 1 1 0\n7 0 1 0\n8 0 0 1\n9 0 1 1\n10 1 0 1\n$EndNodes\n$Elements\n1\n"
-      "1 11 2 0 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
-  for (const auto& mesh : {vtk, gmsh}) {
+  for (const auto& mesh :
+       {imported("a.vtk", ten_nodes_of_vtk()), imported("b.msh", ten_nodes_of_gmsh())}) {
     if (!mesh) continue;
     ASSERT_EQ(mesh->mesh.tets.size(), 8U);
     double sum = 0;

@@ -21,6 +21,7 @@
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/provenance.hpp"
 #include "host/warp/backend_choice.hpp"
+#include "host/warp/curve_checks.hpp"
 #include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
@@ -260,6 +261,17 @@ void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
   if (!plan.output_folder.empty()) check_folder(plan.output_folder);
   check_output_files(files_to_write(arguments, plan.outputs()), inputs_of(arguments));
 }
+/// Throws IoError when options ask for what curved maps of the mesh do not give.
+void check_curves(const MeshReader& mesh, const WarpArguments& arguments) {
+  if (mesh.mid_nodes().empty()) return;
+  WarpOptions warp = arguments.warp;
+  for (const auto& [array, quantity] : arguments.quantities) warp.quantities.push_back(quantity);
+  const std::string refusal = curves_refusal(warp, arguments.extra.contains(forward_output));
+  if (refusal.empty()) return;
+  throw IoError(arguments.mesh_file(), "",
+                refusal + " by --ten-nodes split into eight straight ones");
+}
+
 }  // namespace
 
 std::vector<std::string> JobPlan::outputs() const {
@@ -286,6 +298,7 @@ JobPlan plan_job(const WarpArguments& arguments) {
                .volumes = {},
                .warnings = {},
                .notes = {}};
+  check_curves(plan.mesh, arguments);
   plan.warnings = mesh_warnings(plan.mesh.header(), arguments);
   const std::int64_t step_count = std::max<std::int64_t>(1, std::ssize(plan.mesh.header().times));
   try {

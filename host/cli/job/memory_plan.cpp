@@ -110,7 +110,8 @@ double least_block_memory(BlockPlanner& planner,
   return least;
 }
 
-std::string needs_all_at_once(const WarpArguments& arguments) {
+std::string needs_all_at_once(const WarpArguments& arguments, bool has_curves) {
+  if (has_curves) return "tetrahedra of ten nodes need the whole source; use --ten-nodes split";
   if (arguments.extra.contains(forward_output)) {
     return "the forward displacement needs the whole mesh; leave out --outputs forward";
   }
@@ -136,7 +137,7 @@ void refuse(VolumePlan& plan, const WarpArguments& arguments, const std::string&
   plan.refusal = reason;
 }
 
-double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments) {
+double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments, bool has_curves) {
   const double available = resident_memory() + available_memory();
   const double limit = arguments.memory > 0 ? std::min(arguments.memory, available) : available;
   if (plan.memory <= limit) return limit;
@@ -151,7 +152,7 @@ double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments) {
                        plan.fields.empty() ? "a smaller --roi, " : ""));
     return limit;
   }
-  const std::string reason = needs_all_at_once(arguments);
+  const std::string reason = needs_all_at_once(arguments, has_curves);
   if (!reason.empty()) {
     throw IoError(plan.path, "",
                   fmt::format("{}, or give --memory at least {}", reason, limit_text(plan.memory)));
@@ -172,14 +173,17 @@ bool plan_memory(VolumePlan& plan,
     source_bytes +=
         source_voxels * array.components * filter_bytes(arguments.warp.filter, array.type);
   }
-  // Owners of voxels, kept where voxels outside or labels by Gaussian weights depend on them.
-  const bool keeps_owners = (extends(arguments.warp.outside) || takes_gaussian(arguments.warp)) &&
-                            !arguments.extra.contains(owner_output);
+  // Owners of voxels, kept where voxels outside, labels by Gaussian weights or curved maps depend
+  // on them.
+  const bool has_curves = !mesh.mid_nodes().empty();
+  const bool needs_owners =
+      extends(arguments.warp.outside) || takes_gaussian(arguments.warp) || has_curves;
+  const bool keeps_owners = needs_owners && !arguments.extra.contains(owner_output);
   const double samples = source_bytes + output_bytes + (keeps_owners ? 4 * output_voxels : 0);
   plan.memory = samples + fixed_memory(plan, arguments, mesh.header());
   const bool is_exact = arguments.memory > 0 || arguments.dry_run;
   plan.memory += is_exact ? list_memory(plan, arguments, mesh, steps) : 0.01 * samples;
-  return plan.memory + output_bytes <= set_memory_limit(plan, arguments);
+  return plan.memory + output_bytes <= set_memory_limit(plan, arguments, has_curves);
 }
 
 }  // namespace tetwarp::cli

@@ -12,7 +12,8 @@
 namespace tetwarp::cli {
 
 /// Why an output cannot be computed in blocks, with a remedy; empty: it can.
-std::string needs_all_at_once(const WarpArguments& arguments);
+/// @param has_curves  whether the mesh has tetrahedra of ten nodes
+std::string needs_all_at_once(const WarpArguments& arguments, bool has_curves = false);
 
 /// Bytes of one voxel of all arrays.
 double voxel_bytes(const std::vector<ArrayHeader>& arrays);
@@ -28,9 +29,10 @@ double fixed_memory(const VolumePlan& plan, const WarpArguments& arguments, cons
 void refuse(VolumePlan& plan, const WarpArguments& arguments, const std::string& reason);
 
 /// Sets `memory_limit` of a plan whose `memory` is known. Refuses what does not fit.
+/// @param has_curves  whether the mesh has tetrahedra of ten nodes
 /// @throws IoError  with --memory when it cannot be computed in blocks
 /// @returns memory that the process may take [byte]
-double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments);
+double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments, bool has_curves = false);
 
 /// Sets `memory`, `memory_limit` and, with --dry-run, `refusal` of a plan. Throws
 /// std::invalid_argument, IoError if sources, outputs and extra outputs do not fit in memory; with

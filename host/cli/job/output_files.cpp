@@ -33,6 +33,7 @@ Fingerprint fingerprint_of_options(const WarpArguments& arguments,
   fingerprint.add(volume.written_grid);
   fingerprint.add(volume.active);
   fingerprint.add(plan.mesh.mesh().tets);
+  fingerprint.add(plan.mesh.mid_nodes());
   fingerprint.add(plan.mesh.mesh().hexes);
   fingerprint.add(plan.mesh.mesh().rest_positions);
   return fingerprint;

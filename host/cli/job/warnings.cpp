@@ -167,11 +167,12 @@ Warnings array_warnings(const std::string& volume,
 Warnings step_warnings(const std::string& mesh,
                        std::int64_t mesh_steps,
                        std::span<const StepReport> steps) {
-  Steps inverted, uncovered;
+  Steps inverted, uncovered, straightened;
   for (const StepReport& step : steps) {
     const Counts& counts = step.counts;
     const std::int64_t number = mesh_steps > 1 ? step.step : 0;
     if (counts.inverted > 0) inverted.emplace(number, &counts);
+    if (counts.voxels_straightened > 0) straightened.emplace(number, &counts);
     if (counts.voxels > 0 && counts.covered == 0) uncovered.emplace(number, &counts);
   }
   Warnings warnings;
@@ -181,6 +182,12 @@ Warnings step_warnings(const std::string& mesh,
         fmt::format("{}: {} of {} tetrahedra are inverted at {}: their voxels show "
                     "the source mirrored",
                     mesh, first.inverted, first.tetrahedra, steps_text(inverted)));
+  }
+  if (!straightened.empty()) {
+    warnings.push_back(fmt::format(
+        "{}: {} voxels are mapped by straight tetrahedra at {}: the curved map of their "
+        "tetrahedron of ten nodes has no inverse there; correct its middle nodes",
+        mesh, straightened.begin()->second->voxels_straightened, steps_text(straightened)));
   }
   if (!uncovered.empty()) {
     warnings.push_back(

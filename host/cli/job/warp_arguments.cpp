@@ -9,6 +9,7 @@
 
 #include "host/cli/common/axes_option.hpp"
 #include "host/cli/common/declare.hpp"
+#include "host/cli/common/ten_nodes_option.hpp"
 #include "host/cli/job/label_rule_option.hpp"
 
 namespace tetwarp::cli {
@@ -208,6 +209,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
          "the last file is a warp field of FSL, and what its numbers are [told by its intent and "
          "its numbers]")
       ->type_name("relative|absolute");
+  add_ten_nodes(app, arguments.mesh.import.keeps_curved);
   app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
   app.add_option("--rest-step", arguments.mesh.rest_step,

@@ -82,8 +82,10 @@ void run_volume_import(const ImportArguments& arguments) {
 void run_mesh_import(const ImportArguments& arguments) {
   MeshImportOptions options = arguments.mesh;
   options.axes = arguments.axes.value_or(Axes::ras);
+  options.keeps_curved = true;
   const ImportedMesh mesh = import_mesh(arguments.input, options);
-  write_mesh(arguments.output, mesh.mesh, mesh.displacements, mesh.times, mesh.arrays);
+  write_mesh(arguments.output, CurvedMesh{mesh.mesh, mesh.mid_nodes}, mesh.displacements,
+             mesh.times, mesh.arrays);
   print_merged(arguments.input, mesh.merged);
   print_left_out(arguments.input, mesh.left_out);
   if (arguments.quiet) return;

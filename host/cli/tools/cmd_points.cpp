@@ -17,6 +17,7 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/ten_nodes_option.hpp"
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/step_selection.hpp"
 #include "host/cli/job/warnings.hpp"
@@ -75,16 +76,29 @@ MappedPoints moved(const PointsArguments& arguments,
                    const std::vector<Point3>& points,
                    const MapPointsOptions& options) {
   try {
-    return map_points(mesh.mesh(), mesh.read_step(step), points, options);
+    if (mesh.mid_nodes().empty()) {
+      return map_points(mesh.mesh(), mesh.read_step(step), points, options);
+    }
+    return map_points(CurvedMesh{mesh.mesh(), mesh.mid_nodes()}, mesh.read_step(step), points,
+                      options);
   } catch (const std::invalid_argument& error) {
     throw IoError(arguments.mesh_file, "", error.what());
   }
 }
 
-void print_outside(const PointsArguments& arguments,
-                   const std::string& output,
-                   std::int64_t outside,
-                   std::size_t count) {
+/// Tells of points that are in no cell, and of those without a place in a curved cell.
+void print_kept(const PointsArguments& arguments,
+                const std::string& output,
+                const MappedPoints& mapped) {
+  const std::size_t count = mapped.points.size();
+  const std::int64_t outside = mapped.outside;
+  if (mapped.straightened > 0) {
+    fmt::print(
+        stderr,
+        "tetwarp: {}: {} of {} points of {} move with straight tetrahedra, as the curved map "
+        "of theirs has no inverse there\n",
+        output, mapped.straightened, count, arguments.input);
+  }
   if (outside == 0) return;
   fmt::print(stderr,
              "tetwarp: {}: {} of {} points of {} are in no cell of the {} mesh and keep "
@@ -123,7 +137,7 @@ int run_points(const PointsArguments& arguments) {
     std::vector<std::uint8_t> inside;
     for (const std::int32_t owner : mapped.owners) inside.push_back(owner >= 0 ? 1 : 0);
     const std::string lost = file.write(names[s], mapped.points, inside);
-    print_outside(arguments, names[s], mapped.outside, inside.size());
+    print_kept(arguments, names[s], mapped);
     if (!lost.empty()) fmt::print(stderr, "tetwarp: {}: left out: {}\n", names[s], lost);
     if (arguments.quiet) continue;
     fmt::print("{} points, {} moved {} step {}: {}\n", inside.size(),
@@ -165,6 +179,7 @@ void declare_files(CLI::App& command, PointsArguments& arguments) {
                   "of a mesh in .msh, .vtu or .vtk: point array (Gmsh: node data) that deforms it "
                   "[displacement]")
       ->type_name("NAME");
+  add_ten_nodes(command, arguments.mesh.import.keeps_curved);
   command.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
   command

@@ -65,7 +65,10 @@ void BlockWarper::end_block(const WarpBlock& block, std::int32_t* owners, Counts
 
 void BlockWarper::make_warper(const WarpBlock& block, const Samples& windows) {
   const Mesh& mesh = task_.job.mesh.mesh();
-  if (task_.is_whole) {
+  const std::vector<MidNodes>& mid_nodes = task_.job.mesh.mid_nodes();
+  if (task_.is_whole && !mid_nodes.empty()) {
+    warper_.emplace(sources_.views(), CurvedMesh{mesh, mid_nodes}, task_.options);
+  } else if (task_.is_whole) {
     warper_.emplace(sources_.views(), mesh, task_.options);
   } else {
     WarpOptions options = task_.options;

@@ -41,7 +41,8 @@ void run_volume(const WarpArguments& arguments,
                 ProgressBar& bar,
                 JobResult& result) {
   const bool is_single = plan.volumes.size() == 1 && volume.outputs.size() == 1;
-  if (ranks.count() > 1 && is_single && needs_all_at_once(arguments).empty()) {
+  const bool has_curves = !plan.mesh.mid_nodes().empty();
+  if (ranks.count() > 1 && is_single && needs_all_at_once(arguments, has_curves).empty()) {
     VolumeRun(arguments, plan, volume, ranks, bar, result).run();
     return;
   }

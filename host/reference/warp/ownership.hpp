@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/warp_backend.hpp"
+#include "host/reference/warp/curved_tetrahedron.hpp"
 #include "host/reference/warp/exact_geometry.hpp"
 #include "host/reference/warp/fields.hpp"
 #include "host/reference/warp/hexahedron.hpp"
@@ -71,6 +72,29 @@ class Ownership {
     return Hexahedron{Trilinear(now), Trilinear(rest), whole_shift(rest, now)};
   }
 
+  /// The quadratic maps of tetrahedron t, if it has ten nodes and they differ from those of its
+  /// corners.
+  struct Curve {
+    QuadraticTetrahedron now;
+    QuadraticTetrahedron rest;
+  };
+  std::optional<Curve> curve_of(std::int32_t t,
+                                const double* rest_positions,
+                                const double* deformed) const {
+    const auto tet = static_cast<std::size_t>(t);
+    if (tet >= plan_.mid_nodes.size() || plan_.mid_nodes[tet] == no_mid_nodes) return std::nullopt;
+    TenQuanta now, rest;
+    for (std::size_t n = 0; n < 10; ++n) {
+      const auto node =
+          static_cast<std::size_t>(n < 4 ? plan_.mesh.tets[tet][n] : plan_.mid_nodes[tet][n - 4]);
+      now[n] = output.quanta_of(deformed + 3 * node);
+      rest[n] = source.quanta_of(rest_positions + 3 * node);
+    }
+    if (has_straight_edges(now) && has_straight_edges(rest)) return std::nullopt;
+    if (whole_shift(rest, now)) return std::nullopt;
+    return Curve{QuadraticTetrahedron(now), QuadraticTetrahedron(rest)};
+  }
+
   /// F = d deformed / d rest at a voxel that tetrahedron t owns, in world axes.
   Eigen::Matrix3d gradient(std::int32_t t,
                            const Eigen::Vector3d& voxel,
@@ -81,8 +105,14 @@ class Ownership {
       return output.to_world * hex->now.gradient(u) *
              (source.to_world * hex->rest.gradient(u)).inverse();
     }
-    return gradient_of(corners_of(t, rest, source), source, corners_of(t, deformed, output),
-                       output);
+    const Corners now = corners_of(t, deformed, output);
+    if (const auto curved = curve_of(t, rest, deformed)) {
+      if (const auto l = curved->now.inverse(voxel, weights_of(now, voxel))) {
+        return output.to_world * curved->now.gradient(*l) *
+               (source.to_world * curved->rest.gradient(*l)).inverse();
+      }
+    }
+    return gradient_of(corners_of(t, rest, source), source, now, output);
   }
 
   /// Number of the cell that tetrahedron t is or is a part of.
@@ -114,6 +144,7 @@ class Ownership {
     counts.inverted += (volume > 0 && rest_volume < 0) || (volume < 0 && rest_volume > 0);
 
     const std::optional<Hexahedron> hex = hexahedron_of(t, rest_positions, deformed);
+    const std::optional<Curve> curve = curve_of(t, rest_positions, deformed);
     const std::optional<Eigen::Vector3d> shift = hex ? hex->shift : whole_shift(rest, now);
     const Region box = box_of(now);
     for (std::int64_t k = box.begin[2]; k < box.end[2]; ++k) {
@@ -131,7 +162,12 @@ class Ownership {
           owner[v] = t;
           const Eigen::Vector3d x(static_cast<double>(i), static_cast<double>(j),
                                   static_cast<double>(k));
-          if (shift) {
+          const std::optional<Eigen::Vector4d> l =
+              curve ? curve->now.inverse(x, b->weight) : std::nullopt;
+          counts.voxels_straightened += curve && !l;
+          if (l) {
+            source_position[v] = curve->rest.at(*l);
+          } else if (shift) {
             source_position[v] = x + *shift;
           } else if (hex) {
             source_position[v] = hex->rest.at(hex->now.inverse(x));
@@ -164,6 +200,15 @@ class Ownership {
   /// Tetrahedra that are not parts of hexahedra; they come first.
   std::int32_t lone_tets() const {
     return static_cast<std::int32_t>(plan_.mesh.tets.size() - 6 * plan_.mesh.hexes.size());
+  }
+
+  /// Barycentric coordinates of a voxel that the tetrahedron owns.
+  static Eigen::Vector4d weights_of(const Corners& tet, const Eigen::Vector3d& voxel) {
+    Quanta x;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      x[axis] = std::llround(voxel(static_cast<Eigen::Index>(axis))) * one_voxel_int;
+    }
+    return barycentric_of(tet, x)->weight;
   }
 
   /// sum_i weight_i rest_i [voxel]

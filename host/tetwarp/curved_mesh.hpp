@@ -1,0 +1,59 @@
+/// @file curved_mesh.hpp
+/// Meshes with tetrahedra of ten nodes, whose edges may be bent.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tetwarp/export.hpp>
+#include <tetwarp/mesh.hpp>
+
+namespace tetwarp {
+
+/// The nodes on the edges of a tetrahedron in VTK's order: of the edges between its nodes 0 1, 1 2,
+/// 2 0, 0 3, 1 3 and 2 3.
+using MidNodes = std::array<std::int32_t, 6>;
+
+constexpr MidNodes no_mid_nodes = {-1, -1, -1, -1, -1, -1};  ///< of a tetrahedron of four nodes
+
+/// A mesh some of whose tetrahedra have ten nodes: between them positions are quadratic, so that
+/// edges go through their middle nodes.
+///
+/// A voxel or point belongs to the tetrahedron whose four corners hold it, as if edges were
+/// straight, and is mapped by the quadratic map of that tetrahedron, inverted by Newton's method.
+/// With L the barycentric coordinates of a place in the straight tetrahedron and d the way of each
+/// middle node from the middle of its edge, the curved tetrahedron has it at a distance of at most
+/// the sum over edges of 4 L_a L_b |d|, which is no more than 1.5 times the longest d: so far may
+/// the straight faces between cells be from the curved ones.
+///
+/// Where Newton's method does not converge, the quadratic map is folded, or the place lies more
+/// than a quarter of the cell beyond it, the straight map is taken and counted
+/// (Counts::voxels_straightened, MappedPoints::straightened). A cell all of whose middle nodes are
+/// within 2^-20 voxel of the middles of their edges, along each axis, is one of four nodes.
+struct CurvedMesh {
+  Mesh mesh;  ///< its rest positions include the nodes on edges
+  /// [tet_count], indices into rest_positions or no_mid_nodes; empty: no tetrahedron has any.
+  std::vector<MidNodes> mid_nodes = {};
+};
+
+/// Checks that there are middle nodes for each tetrahedron or for none, and that they exist.
+/// @throws std::invalid_argument naming the first violation
+TETWARP_EXPORT void check_mid_nodes(const Mesh& mesh, const std::vector<MidNodes>& mid_nodes);
+
+/// Whether a tetrahedron has ten nodes.
+inline bool is_curved(const CurvedMesh& mesh, std::size_t tet) {
+  return tet < mesh.mid_nodes.size() && mesh.mid_nodes[tet] != no_mid_nodes;
+}
+
+/// The eight tetrahedra between the ten nodes of one: four at its corners, and four around the line
+/// between the middles of two opposite edges.
+TETWARP_EXPORT std::array<std::array<std::int32_t, 4>, 8> parts_of_curved(
+    const std::array<std::int32_t, 4>& corners, const MidNodes& mid_nodes);
+
+/// The mesh with these in place of every tetrahedron of ten nodes. Its map is off the curved one by
+/// at most a quarter of the sum of the distances of the six middle nodes from the middles of their
+/// edges.
+TETWARP_EXPORT Mesh split_curved(const CurvedMesh& mesh);
+
+}  // namespace tetwarp
