@@ -149,6 +149,8 @@ PICTURES = {
 
 
 def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     folder = Path(sys.argv[1]).resolve()
     names = sys.argv[2:] or list(PICTURES)
     del sys.argv[1:]  # the examples make their inputs

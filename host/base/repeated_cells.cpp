@@ -91,6 +91,25 @@ template TETWARP_EXPORT std::vector<std::size_t> first_copies<8>(
     const std::vector<std::array<std::int32_t, 8>>& cells,
     SameCells same);
 
+std::vector<std::size_t> first_tet_copies(const std::vector<Point3>& points,
+                                          const std::vector<std::array<std::int32_t, 4>>& tets,
+                                          const std::vector<MidNodes>& mid_nodes) {
+  std::vector<std::size_t> firsts = first_copies(points, tets, SameCells::places);
+  if (mid_nodes.empty()) return firsts;
+  const auto middles = [&](std::size_t tet) {
+    std::vector<Point3> places;
+    for (const std::int32_t node : mid_nodes[tet]) {
+      if (node >= 0) places.push_back(points[static_cast<std::size_t>(node)]);
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+  };
+  for (std::size_t tet = 0; tet < firsts.size(); ++tet) {
+    if (firsts[tet] != tet && middles(tet) != middles(firsts[tet])) firsts[tet] = tet;
+  }
+  return firsts;
+}
+
 std::size_t copy_count(const std::vector<std::size_t>& firsts) {
   std::size_t copies = 0;
   for (std::size_t c = 0; c < firsts.size(); ++c) copies += firsts[c] == c ? 0 : 1;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/export.hpp>
 
 #include "host/base/point3.hpp"
@@ -28,6 +29,13 @@ TETWARP_EXPORT std::vector<std::size_t> first_copies(
     const std::vector<Point3>& points,
     const std::vector<std::array<std::int32_t, nodes_per_cell>>& cells,
     SameCells same);
+
+/// Per tetrahedron the first one of the same corners whose edges are bent alike.
+/// @param mid_nodes  as those of CurvedMesh
+TETWARP_EXPORT std::vector<std::size_t> first_tet_copies(
+    const std::vector<Point3>& points,
+    const std::vector<std::array<std::int32_t, 4>>& tets,
+    const std::vector<MidNodes>& mid_nodes);
 
 /// How many cells are not the first of their kind.
 TETWARP_EXPORT std::size_t copy_count(const std::vector<std::size_t>& firsts);

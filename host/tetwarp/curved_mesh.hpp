@@ -3,7 +3,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <tetwarp/export.hpp>
@@ -22,15 +21,16 @@ constexpr MidNodes no_mid_nodes = {-1, -1, -1, -1, -1, -1};  ///< of a tetrahedr
 ///
 /// A voxel or point belongs to the tetrahedron whose four corners hold it, as if edges were
 /// straight, and is mapped by the quadratic map of that tetrahedron, inverted by Newton's method.
-/// With L the barycentric coordinates of a place in the straight tetrahedron and d the way of each
-/// middle node from the middle of its edge, the curved tetrahedron has it at a distance of at most
-/// the sum over edges of 4 L_a L_b |d|, which is no more than 1.5 times the longest d: so far may
-/// the straight faces between cells be from the curved ones.
+/// Let L be the barycentric coordinates of a place in the straight tetrahedron, and d the way of
+/// each middle node from the middle of its edge. The quadratic map moves this place by at most the
+/// sum over edges of 4 L_a L_b |d|: within the cell by 1.5 times the longest d, on its faces by 4/3
+/// times.
 ///
-/// Where Newton's method does not converge, the quadratic map is folded, or the place lies more
-/// than a quarter of the cell beyond it, the straight map is taken and counted
-/// (Counts::voxels_straightened, MappedPoints::straightened). A cell all of whose middle nodes are
-/// within 2^-20 voxel of the middles of their edges, along each axis, is one of four nodes.
+/// Where Newton's method does not converge, the quadratic map is folded, the place lies more than a
+/// quarter of the cell beyond it, or a middle node is beyond the limits of positions, the straight
+/// map is taken and counted (Counts::voxels_straightened, MappedPoints::straightened). A cell all
+/// of whose middle nodes are within 2^-20 voxel of the middles of their edges, along each axis, is
+/// one of four nodes.
 struct CurvedMesh {
   Mesh mesh;  ///< its rest positions include the nodes on edges
   /// [tet_count], indices into rest_positions or no_mid_nodes; empty: no tetrahedron has any.

@@ -37,7 +37,10 @@ double nanoseconds_of(const LabelGaussian& gaussian) {
 }
 }  // namespace
 
-double estimated_cpu_seconds(const WarpOptions& options, double samples, bool has_hexahedra) {
+double estimated_cpu_seconds(const WarpOptions& options,
+                             double samples,
+                             bool has_hexahedra,
+                             bool has_ten_nodes) {
   double nanoseconds = nanoseconds_of(options.filter);
   // docs/benchmarks.md, what features cost, over the plain step.
   if (options.antialias) nanoseconds *= 8;
@@ -45,6 +48,7 @@ double estimated_cpu_seconds(const WarpOptions& options, double samples, bool ha
   if (sums_boxes(options)) nanoseconds = 2100;
   if (takes_gaussian(options)) nanoseconds += nanoseconds_of(options.label_gaussian);
   if (has_hexahedra) nanoseconds += 220;
+  if (has_ten_nodes) nanoseconds += 185;
   return 1e-9 * nanoseconds * samples / thread_count(options.threads);
 }
 

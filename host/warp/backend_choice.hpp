@@ -17,7 +17,8 @@ namespace tetwarp {
 /// @param samples  output voxels times components, of all outputs and steps
 TETWARP_EXPORT double estimated_cpu_seconds(const WarpOptions& options,
                                             double samples,
-                                            bool has_hexahedra);
+                                            bool has_hexahedra,
+                                            bool has_ten_nodes = false);
 
 /// As choose_backend() for the options, but `automatic` takes cpu where the whole work takes that
 /// less than a device takes to start.

@@ -8,7 +8,7 @@ namespace tetwarp {
 
 std::string curves_refusal(const WarpOptions& options, bool forward) {
   const auto refused = [](const std::string& what, const char* why) {
-    return what + " " + why + ", tetrahedra of ten nodes have curved ones; split them";
+    return what + " " + why + ", which tetrahedra of ten nodes do not have; split them";
   };
   if (options.antialias) return refused("antialias", "averages by affine maps");
   if (options.intensity != Intensity::value) {

@@ -35,16 +35,17 @@ class WarpCurves {
              const RasterJob<T>& job,
              View<const std::int32_t> owners,
              std::int64_t* count) {
-    voxel_curve(exec_, VoxelCurveOp<T>{voxels(pairs, owners), job, count});
+    voxel_curve(exec_, "warp/raster", VoxelCurveOp<T>{voxels(pairs, owners), job, count});
   }
 
   /// Writes the fields that depend on owners.
   void write(const WarpPairs<Exec>& pairs, View<const std::int32_t> owners, const FieldTarget& to) {
     if (!needs_owners(to)) return;
-    voxel_curve(exec_, CurveFieldsOp{voxels(pairs, owners),
-                                     geometry_.axes,
-                                     make_displacement_map(plan_, geometry_.frame),
-                                     {to.displacement, to.jacobian, to.gradient, to.strain}});
+    voxel_curve(exec_, "warp/fields",
+                CurveFieldsOp{voxels(pairs, owners),
+                              geometry_.axes,
+                              make_displacement_map(plan_, geometry_.frame),
+                              {to.displacement, to.jacobian, to.gradient, to.strain}});
   }
 
  private:

@@ -51,6 +51,7 @@ void move(Backend backend, const PointPlan& plan, MappedPoints& result) {
       return move_points_cpu(plan, result);
   }
 }
+
 MappedPoints moved(const Mesh& mesh,
                    const std::vector<MidNodes>& mid_nodes,
                    const std::vector<Point3>& deformed,

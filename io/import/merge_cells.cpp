@@ -58,7 +58,7 @@ void join_groups(const std::vector<std::size_t>& firsts, ImportedMesh& mesh) {
 void merge_cells(ImportedMesh& mesh) {
   const std::vector<Point3>& nodes = mesh.mesh.rest_positions;
   const std::size_t tets = mesh.mesh.tets.size();
-  std::vector<std::size_t> firsts = first_copies(nodes, mesh.mesh.tets, SameCells::places);
+  std::vector<std::size_t> firsts = first_tet_copies(nodes, mesh.mesh.tets, mesh.mid_nodes);
   const auto hex_firsts = first_copies(nodes, mesh.mesh.hexes, SameCells::places);
   const std::vector<std::size_t> tet_firsts = firsts;
   for (const std::size_t hex : hex_firsts) firsts.push_back(tets + hex);

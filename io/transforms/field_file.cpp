@@ -2,11 +2,13 @@
 /// The convention of a field from its header.
 #include "io/transforms/field_file.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tetwarp/io.hpp>
 #include <utility>
 
@@ -174,6 +176,13 @@ TransformParts open_volume_field(const std::string& path) {
       std::make_shared<const FieldNumbers>(path, "tetwarp_displacement", VolumeReadOptions{}), 1,
       "displacements along the file's axes (array tetwarp_displacement)",
       [](const Region&, float*) {});
+}
+
+void fail_not_finite(const std::string& path, const std::array<std::int64_t, 3>& voxel) {
+  throw IoError(path, "",
+                "its displacement is not finite at voxel (" + std::to_string(voxel[0]) + ", " +
+                    std::to_string(voxel[1]) + ", " + std::to_string(voxel[2]) +
+                    "); correct it, or write 0 where there is none");
 }
 
 }  // namespace tetwarp

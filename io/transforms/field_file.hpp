@@ -1,6 +1,8 @@
 /// @file field_file.hpp
 /// Displacement fields in NIfTI images, NRRD files, MetaImages and VTKHDF volumes.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <string>
 
 #include <tetwarp/transform_file.hpp>
@@ -11,5 +13,9 @@ namespace tetwarp {
 TransformParts open_nifti_field(const std::string& path, const TransformReadOptions& options);
 TransformParts open_image_field(const std::string& path, const TransformReadOptions& options);
 TransformParts open_volume_field(const std::string& path);
+
+/// @throws IoError  about a voxel whose displacement is not finite
+[[noreturn]] void fail_not_finite(const std::string& path,
+                                  const std::array<std::int64_t, 3>& voxel);
 
 }  // namespace tetwarp

@@ -17,6 +17,7 @@
 #include "host/base/point3.hpp"
 #include "io/nifti/nifti_fields.hpp"
 #include "io/nifti/nifti_samples.hpp"
+#include "io/transforms/field_file.hpp"
 
 namespace tetwarp {
 namespace {
@@ -166,6 +167,8 @@ FslWarp kind_of_numbers(const std::string& path, const FslSpace& space, FslNumbe
         const Point3 voxel{static_cast<double>(n % dims[0]),
                            static_cast<double>(n / dims[0] % dims[1]),
                            static_cast<double>(k + n / (dims[0] * dims[1]))};
+        if (!std::isfinite(x))
+          fail_not_finite(path, {n % dims[0], n / dims[0] % dims[1], k + n / (dims[0] * dims[1])});
         number.add(x);
         rest.add(x - space.of_voxel(voxel)[axis]);
       });

@@ -145,7 +145,10 @@ AffineTransform affine_of(const std::string& path,
   check_count(path, transform.type, p.size(), kind.parameter_count, "parameters");
   AffineTransform affine{kind.matrix(transform), {0, 0, 0}};
   Point3 center{0, 0, 0};
-  if (transform.fixed.size() >= 3) std::copy_n(transform.fixed.begin(), 3, center.begin());
+  if (!transform.fixed.empty() && transform.fixed.size() < 3) {
+    check_count(path, transform.type, transform.fixed.size(), 3, "fixed parameters");
+  }
+  if (!transform.fixed.empty()) std::copy_n(transform.fixed.begin(), 3, center.begin());
   const Point3 turned = product(affine.matrix, center);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     affine.offset[axis] = center[axis] - turned[axis];

@@ -3,6 +3,7 @@
 #include <tetwarp/transform_file.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -30,6 +31,7 @@ const char* what_of(const Transform& transform) {
   if (std::holds_alternative<BSplineTransform>(transform)) return "B-spline";
   return "composite";
 }
+
 /// @throws IoError  naming the first voxel of a region whose displacement is not finite
 void check_displacement(const std::string& path, const Region& region, const float* displacement) {
   const std::int64_t count = 3 * region.voxel_count();
@@ -41,15 +43,13 @@ void check_displacement(const std::string& path, const Region& region, const flo
   const auto is_finite = [](float number) { return std::isfinite(number); };
   std::int64_t voxel =
       (std::find_if_not(displacement, displacement + count, is_finite) - displacement) / 3;
-  std::string place;
+  std::array<std::int64_t, 3> place{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::int64_t size = region.end[axis] - region.begin[axis];
-    place += (axis > 0 ? ", " : "") + std::to_string(region.begin[axis] + voxel % size);
+    place[axis] = region.begin[axis] + voxel % size;
     voxel /= size;
   }
-  throw IoError(path, "",
-                "its displacement is not finite at voxel (" + place +
-                    "); correct it, or write 0 where there is none");
+  fail_not_finite(path, place);
 }
 
 TransformParts opened(const std::string& path, const TransformReadOptions& options) {

@@ -84,7 +84,7 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
   parts = file->parts_of(options.rest_step);
   MeshCells cells = file->read_cells(options.rest_step);
   mesh.rest_positions = file->read_points(options.rest_step);
-  tet_firsts = first_copies(mesh.rest_positions, cells.tets, SameCells::places);
+  tet_firsts = first_tet_copies(mesh.rest_positions, cells.tets, cells.mid_nodes);
   hex_firsts = first_copies(mesh.rest_positions, cells.hexes, SameCells::places);
   header.merged = merged_text(copy_count(tet_firsts) + copy_count(hex_firsts),
                               cells.tets.size() + cells.hexes.size(), "cells");

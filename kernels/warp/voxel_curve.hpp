@@ -131,18 +131,20 @@ struct CurveFieldsOp {
 
 /// Runs one of these over all voxels.
 /// @param exec  where to run
+/// @param name  of the timing
 /// @param op    input and output; `stretch` is set here: whole rows on the CPU, where the map of
 ///              the voxel before is kept, single voxels on a device
 ///
 /// Determinism: positions within 2^-24 voxel of the source between back ends where the cell is not
 /// nearly folded; whether a place counts as beyond the inverse may differ within that. Any region
-/// has the bits of the whole grid. Cost: three Newton steps of about 200 operations a voxel, on a
-/// device 480 bytes of nodes, too. Source: the quadratic tetrahedron of finite elements; ours.
+/// has the bits of the whole grid. Cost: three Newton steps of about 200 operations a voxel, for
+/// each source and for the fields; on a device 480 bytes of nodes, too. Source: the quadratic
+/// tetrahedron of finite elements; ours.
 template <class Exec, class Op>
-void voxel_curve(Exec& exec, Op op) {
+void voxel_curve(Exec& exec, const char* name, Op op) {
   CurveVoxels& voxels = op.voxels;
   voxels.stretch = Exec::reads_are_free ? voxels.frame.end[0] - voxels.frame.begin[0] : 1;
-  exec.for_each("warp/raster", voxels.index_count(), op);
+  exec.for_each(name, voxels.index_count(), op);
 }
 
 }  // namespace tetwarp

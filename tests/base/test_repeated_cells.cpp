@@ -30,6 +30,22 @@ const Surface cube{
      {3, 0, 4},
      {3, 4, 7}}};
 
+TEST(RepeatedCells, OfTenNodesAreTheSameWhereTheirEdgesAreBentAlike) {
+  const std::vector<Point3> points = {{0, 0, 0},    {2, 0, 0}, {0, 2, 0}, {0, 0, 2},
+                                      {1, 0, 0.25}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},
+                                      {1, 0, 1},    {0, 1, 1}, {1, 0, 0}};
+  const std::vector<std::array<std::int32_t, 4>> tets = {
+      {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3}, {0, 1, 2, 3}, {3, 2, 1, 0}};
+  const std::vector<MidNodes> mid_nodes = {{4, 5, 6, 7, 8, 9},
+                                           {4, 7, 8, 5, 6, 9},   // the first, from another corner
+                                           {10, 5, 6, 7, 8, 9},  // another bend
+                                           no_mid_nodes,
+                                           {9, 5, 8, 7, 6, 4}};
+
+  EXPECT_EQ(first_tet_copies(points, tets, mid_nodes), (Firsts{0, 0, 2, 3, 0}));
+  EXPECT_EQ(first_tet_copies(points, tets, {}), (Firsts{0, 0, 0, 0, 0}));
+}
+
 /// Copies of some tetrahedra, with corners in another order and with nodes of their own or not.
 TEST(RepeatedCells, AreFoundAmongTetrahedraWhateverTheirNodesAndOrder) {
   const Mesh whole = make_lattice_mesh(cube, 3);

@@ -2,10 +2,12 @@
 /// Meshes of ten-node tetrahedra in files and in the commands that read meshes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <tetwarp/io.hpp>
 #include <tetwarp/map_points.hpp>
@@ -41,6 +43,21 @@ class CliCurved : public ::testing::Test {
   }
 
   CommandResult run(const Words& words) const { return run_command(scene, words); }
+
+  /// The first three columns of a file of points.
+  std::vector<Point3> rows_of(const std::string& name) const {
+    std::istringstream lines(text_of(scene / name));
+    std::string line;
+    std::getline(lines, line);  // names
+    std::vector<Point3> points;
+    while (std::getline(lines, line)) {
+      std::ranges::replace(line, ',', ' ');
+      std::istringstream numbers(line);
+      Point3& point = points.emplace_back();
+      numbers >> point[0] >> point[1] >> point[2];
+    }
+    return points;
+  }
 
   const Scene scene;
   CurvedMesh mesh;
@@ -106,20 +123,28 @@ TEST_F(CliCurved, PointsFollowTheCurves) {
       run({"points", "b.csv", "ten.vtkhdf", "-o", "d.csv", "--steps", "1", "--inverse"});
   ASSERT_EQ(back.exit_code, 0) << back.err;
 
-  const std::string first = text_of(scene / "b.csv");
-  const std::size_t row = first.find('\n') + 1;
-  EXPECT_NEAR(std::stod(first.substr(row)), moved.points[0][0], 1e-12);
+  const std::vector<Point3> forth = rows_of("b.csv"), again = rows_of("d.csv");
+  ASSERT_EQ(forth.size(), 2U);
+  ASSERT_EQ(again.size(), 2U);
+  const std::vector<Point3> start = {{7, 1, 103}, {20.5, 10.25, 110}};
+  for (std::size_t p = 0; p < 2; ++p) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(forth[p][axis], moved.points[p][axis], 1e-12);
+      EXPECT_NEAR(again[p][axis], start[p][axis], 1e-6);
+    }
+  }
   EXPECT_GT(std::abs(moved.points[0][0] - straight.points[0][0]), 1e-3);
 }
 
-/// Cells of ten nodes stay what they are, with the rows of their arrays.
+/// Cells of ten nodes stay what they are.
 TEST_F(CliCurved, ImportKeepsTheCells) {
   write_text(scene / "a.vtk",
              "# vtk DataFile Version 3.0\nten\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 double\n"
              "0 0 0 2 0 0 0 2 0 0 0 2 1 0 0.25 1 1 0 0 1 0 0 0 1 1 0 1 0 1 1\nCELLS 1 11\n"
              "10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n24\n");
   const CommandResult result = run({"import", "a.vtk", "-o", "a.vtkhdf"});
-  if (result.exit_code != 0) GTEST_SKIP() << result.err;
+  if (result.err.find("libvtk9-dev") != std::string::npos) GTEST_SKIP() << result.err;
+  ASSERT_EQ(result.exit_code, 0) << result.err;
 
   const MeshReader reader(scene / "a.vtkhdf", {.import = {.keeps_curved = true}});
   EXPECT_EQ(reader.mid_nodes(), (std::vector<MidNodes>{{4, 5, 6, 7, 8, 9}}));

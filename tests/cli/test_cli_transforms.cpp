@@ -134,12 +134,12 @@ TEST_F(CliTransforms, NumbersThatAreNotFiniteAreRefused) {
   field.samples<float>()[3 * (12 * (10 * 5 + 4) + 2) + 1] = std::numeric_limits<float>::quiet_NaN();
   write_volumes(scene / "field.vtkhdf", {&field});
 
-  EXPECT_NE(
-      refusal("a.tfm").find("a.tfm: AffineTransform_double_3_3: expected 12 finite parameters"),
-      std::string::npos);
-  EXPECT_NE(refusal("b.tfm").find(
-                "b.tfm: AffineTransform_double_3_3: expected 3 finite fixed parameters"),
+  EXPECT_NE(refusal("a.tfm").find("a.tfm: Transform 0: Parameters[7]: is not a number"),
             std::string::npos);
+  EXPECT_NE(refusal("b.tfm").find("b.tfm: Transform 0: FixedParameters[1]: is infinite"),
+            std::string::npos);
+  write_text(scene / "c.tfm", head + "Parameters: 1 0 0 0 1 0 0 0 1 0 0 0\nFixedParameters: 5 7\n");
+  EXPECT_NE(refusal("c.tfm").find("expected 3 fixed parameters, got 2"), std::string::npos);
   EXPECT_NE(refusal("field.vtkhdf").find("its displacement is not finite at voxel (2, 4, 5)"),
             std::string::npos);
 }

@@ -15,6 +15,7 @@
 #include "io/import/merge_cells.hpp"
 #include "io/import/split_cells.hpp"
 #include "io/volume/mesh_arrays.hpp"
+#include "tests/support/curved_scenes.hpp"
 #include "tests/support/mesh_files.hpp"
 
 namespace tetwarp::test {
@@ -126,7 +127,6 @@ std::string ten_nodes_of_gmsh() {
 }
 
 TEST_F(MeshImport, KeepsTetrahedraOfTenNodesInTheOrderOfVtk) {
-  constexpr std::size_t ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
   for (const auto& mesh : {imported("a.vtk", ten_nodes_of_vtk(), {.keeps_curved = true}),
                            imported("b.msh", ten_nodes_of_gmsh(), {.keeps_curved = true})}) {
     if (!mesh) continue;
@@ -136,8 +136,8 @@ TEST_F(MeshImport, KeepsTetrahedraOfTenNodesInTheOrderOfVtk) {
       return mesh->mesh.rest_positions[static_cast<std::size_t>(node)];
     };
     for (std::size_t e = 0; e < 6; ++e) {
-      const Point3 a = place(mesh->mesh.tets[0][ends[e][0]]);
-      const Point3 b = place(mesh->mesh.tets[0][ends[e][1]]);
+      const Point3 a = place(mesh->mesh.tets[0][ends_of_edges[e][0]]);
+      const Point3 b = place(mesh->mesh.tets[0][ends_of_edges[e][1]]);
       EXPECT_EQ(place(mesh->mid_nodes[0][e]),
                 (Point3{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2}));
     }

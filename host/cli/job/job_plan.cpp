@@ -229,7 +229,7 @@ double cpu_seconds_of(const JobPlan& plan, const WarpArguments& arguments) {
     }
   }
   return estimated_cpu_seconds(arguments.warp, samples / launched_count(),
-                               plan.mesh.header().hex_count > 0);
+                               plan.mesh.header().hex_count > 0, !plan.mesh.mid_nodes().empty());
 }
 
 /// The name of an output in a folder: that of its volume. A pair .hdr and .img and DICOM images
@@ -261,6 +261,7 @@ void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
   if (!plan.output_folder.empty()) check_folder(plan.output_folder);
   check_output_files(files_to_write(arguments, plan.outputs()), inputs_of(arguments));
 }
+
 /// Throws IoError when options ask for what curved maps of the mesh do not give.
 void check_curves(const MeshReader& mesh, const WarpArguments& arguments) {
   if (mesh.mid_nodes().empty()) return;

@@ -181,6 +181,11 @@ bool plan_memory(VolumePlan& plan,
   const bool keeps_owners = needs_owners && !arguments.extra.contains(owner_output);
   const double samples = source_bytes + output_bytes + (keeps_owners ? 4 * output_voxels : 0);
   plan.memory = samples + fixed_memory(plan, arguments, mesh.header());
+  if (has_curves) {  // nodes on edges three times, and a copy of the mesh while the run begins
+    const MeshHeader& size = mesh.header();
+    plan.memory +=
+        90 * static_cast<double>(size.tet_count) + 24 * static_cast<double>(size.node_count);
+  }
   const bool is_exact = arguments.memory > 0 || arguments.dry_run;
   plan.memory += is_exact ? list_memory(plan, arguments, mesh, steps) : 0.01 * samples;
   return plan.memory + output_bytes <= set_memory_limit(plan, arguments, has_curves);

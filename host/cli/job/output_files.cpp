@@ -68,9 +68,10 @@ std::optional<NiftiFacts> facts_of_extra(const std::optional<NiftiFacts>& source
 }
 
 void repeat_report(const StepReport& last, StepReport& report) {
-  for (const auto count : {&Counts::voxels, &Counts::covered, &Counts::outside, &Counts::tetrahedra,
-                           &Counts::inverted, &Counts::flat, &Counts::folded, &Counts::cells,
-                           &Counts::tets_averaged, &Counts::values_clipped}) {
+  for (const auto count :
+       {&Counts::voxels, &Counts::covered, &Counts::outside, &Counts::tetrahedra, &Counts::inverted,
+        &Counts::flat, &Counts::folded, &Counts::cells, &Counts::tets_averaged,
+        &Counts::values_clipped, &Counts::voxels_straightened}) {
     report.counts.*count = last.counts.*count;
   }
   report.counts.steps_unchanged = 1;

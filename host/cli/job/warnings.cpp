@@ -184,10 +184,12 @@ Warnings step_warnings(const std::string& mesh,
                     mesh, first.inverted, first.tetrahedra, steps_text(inverted)));
   }
   if (!straightened.empty()) {
+    std::int64_t voxels = 0;
+    for (const auto& [step, counts] : straightened) voxels += counts->voxels_straightened;
     warnings.push_back(fmt::format(
         "{}: {} voxels are mapped by straight tetrahedra at {}: the curved map of their "
-        "tetrahedron of ten nodes has no inverse there; correct its middle nodes",
-        mesh, straightened.begin()->second->voxels_straightened, steps_text(straightened)));
+        "tetrahedron of ten nodes has no inverse there; correct its nodes on edges",
+        mesh, voxels, steps_text(straightened)));
   }
   if (!uncovered.empty()) {
     warnings.push_back(

@@ -132,9 +132,9 @@ std::optional<ResamplePart> TransformRun::next_part(ResampleBlocks& blocks) cons
 
 StepPlan TransformRun::plan_of_a_step() const {
   StepPlan plan{.volume = plan_.path, .dims = plan_.output_grid.dims};
-  if (is_whole()) {
+  if (is_whole() || !plan_.refusal.empty()) {
     plan.memory = plan_.memory;
-    plan.disk = temporary_disk(plan_, arguments_, 0);
+    plan.disk = temporary_disk(plan_, arguments_, is_whole() ? 0 : 2);
     return plan;
   }
   ResampleBlocks all = blocks(limits());

@@ -43,9 +43,9 @@ void VolumeRun::plan_only() {
   for (const WarpStep& planned : volume.steps) {
     stop_if_interrupted();
     StepPlan step{volume.path, planned.number, volume.written_grid.dims};
-    if (task_.is_whole) {
+    if (task_.is_whole || !volume.refusal.empty()) {
       step.memory = volume.memory;
-      step.disk = temporary_disk(volume, task_.arguments, 0);
+      step.disk = temporary_disk(volume, task_.arguments, task_.is_whole ? 0 : 2);
       result_.plans.push_back(step);
       continue;
     }
