@@ -77,23 +77,24 @@ class CoupledControl {
 
   explicit CoupledControl(const Options& options)
       : options_(options),
+        least_scale_(options.least_error / options.tolerance),
         share_(options.has_elastic ? elastic_share : inner_share),
         final_share_(options.has_elastic ? final_share : 0) {}
 
   /// @param sweeps   of all outer iterations before; or proximal steps
   /// @param excess   () -> double, of an iterate within the tolerance: how many times the tolerance
-  ///                 it is off by a closer measure. Where that is more than 1, errors have to
-  ///                 become smaller in proportion
+  ///                 it is off by a closer measure; not finite where that has no answer. Where it
+  ///                 is more than 1, errors have to become smaller in proportion
   template <class Excess>
   Next next(const CoupledError& error, std::int64_t sweeps, const Excess& excess) {
-    const double scale = std::max(std::sqrt(options_.natural_alone) + error.work,
-                                  options_.least_error / options_.tolerance);
+    const double scale = std::max(std::sqrt(options_.natural_alone) + error.work, least_scale_);
     residual_ = error.total > 0 ? error.total / scale : 0;
     is_best_ = false;
     if (!std::isfinite(error.total)) return Next::fails;
     if (error.total <= options_.tolerance * scale) {
       const double more = excess();
       if (more <= 1) return Next::converges;
+      if (!std::isfinite(more)) return Next::fails;
       options_.tolerance = 0.9 * residual_ / more;
     }
     note_growth(error.total);
@@ -161,6 +162,7 @@ class CoupledControl {
   }
 
   Options options_;
+  double least_scale_;  ///< of the errors
   double share_, final_share_;
   double residual_ = 0, best_ = std::numeric_limits<double>::infinity(), enough_ = 0;
   double mark_ = 0;  ///< residual at the iteration `marked_at_`, when it had last shrunk enough

@@ -48,6 +48,9 @@ CoupledControl::Next iterate_coupled(Problem& problem,
           control.next(*error, outcome.sweeps, [&] { return problem.excess(outcome); });
       outcome.residual = control.residual();
       if (control.is_best()) problem.keep(control.residual());
+      // The closer measure also has no answer where the caller ends it.
+      if (next == Next::fails && problem.limit(outcome) == Next::is_stopped)
+        return Next::is_stopped;
       if (next != Next::proceeds) return next;
       if (control.has_grown()) accelerator.forget();
     }

@@ -29,8 +29,8 @@ struct ResidualCheckState {
 };
 
 struct ResidualCheckJob {
-  CompliantGradients system;  ///< r: in the defect; of a check that goes on as the last launch left
-                              ///< its vectors
+  CompliantGradients system;  ///< its r, in: the defect; a check that goes on takes all vectors as
+                              ///< the launch before has left them
   TouchingRows touching;
   View<const double> velocity;  ///< v, [rows][3]
   CheckedContacts contacts;

@@ -8,9 +8,10 @@
 ///
 ///     A v' = b + J^T r
 ///
-/// are found by conjugate gradients with M^-1 as preconditioner, to a fifth of the way in the norm
-/// of A, and eta is estimated from above as by the contact solver (contact_bound.hpp), whose blocks
-/// of J A^-1 J^T are those of M^-1 at least.
+/// are found by conjugate gradients with M^-1 as preconditioner, to about a fifth of the way in the
+/// norm of A, and eta is estimated as by the contact solver (contact_bound.hpp), whose blocks of
+/// J A^-1 J^T are those of M^-1 at least. Tests compare it with a factorization of A and allow 1.5
+/// times the estimate.
 #pragma once
 #include <cstdint>
 
@@ -46,11 +47,12 @@ struct CausedProgress {
     square = first;
     decide(negligible);
   }
-  /// @param step  length of the step along the direction; zero: what is left is rounding
+  /// @param step  length of the step along the direction; zero: rounding has made A or M^-1
+  ///              indefinite, or there are no numbers
   /// @param next  square of the defect after it
   TETWARP_HD void add(double step, double next, double negligible) {
     if (step == 0) {
-      end = square < INFINITY ? End::found : End::lost;
+      end = End::lost;
       return;
     }
     const double gain = step * square;
@@ -59,6 +61,7 @@ struct CausedProgress {
     square = next;
     if (iterations == most_iterations) end = End::lost;
     decide(negligible);
+    if (end == End::lost) return;
     double last = 0;
     for (const double own : gains_) last += own;
     if (iterations >= few && last <= least_gain * moved_) end = End::found;
@@ -81,7 +84,8 @@ struct CausedProgress {
 
 /// Goes on with at most `most` iterations.
 /// @param exec        reads of its memory are free: host threads, or those of one launch
-/// @param system      its x becomes v', or what v' has more than the iterate; r: in the defect
+/// @param system      its x, in: an iterate or zero, out: v', or v' less what x began from; its r,
+///                    in: the defect
 /// @param begin, end  of its indices
 /// @param negligible  ResidualCheckLimits::negligible()
 /// @param progress    in and out

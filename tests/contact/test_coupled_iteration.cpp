@@ -42,7 +42,8 @@ class OneEquation {
     return CoupledControl({.has_elastic = is_damped,
                            .ends_early = ends_early,
                            .tolerance = 1e-6,
-                           .natural_alone = 1});
+                           .natural_alone = 1,
+                           .least_error = least_error});
   }
   std::optional<CoupledError> find_error(const CoupledOutcome&) {
     const double left = b - a * v_[0];
@@ -54,10 +55,11 @@ class OneEquation {
   void keep(double residual) { best = residual; }
   double excess(const CoupledOutcome&) {
     ++asked;
-    return asked == 1 ? first_excess : 0;
+    return asked == 1 ? first_excess : later_excess;
   }
   Next limit(const CoupledOutcome& outcome) const {
-    return outcome.outer_iterations == most ? Next::is_stopped : Next::proceeds;
+    const bool is_ended = ends_measure && asked > 0;
+    return is_ended || outcome.outer_iterations == most ? Next::is_stopped : Next::proceeds;
   }
   static void solve_contacts(double, CoupledOutcome& outcome) { ++outcome.sweeps; }
   void take_image() { v_ = image_; }
@@ -65,8 +67,9 @@ class OneEquation {
   double velocity() const { return v_[0]; }
 
   static constexpr double a = 2;
-  bool is_damped = false;
-  double first_excess = 0, best = std::numeric_limits<double>::infinity();
+  bool is_damped = false, ends_measure = false;
+  double least_error = 0, first_excess = 0, later_excess = 0,
+         best = std::numeric_limits<double>::infinity();
   std::int64_t most = -1, asked = 0;
   std::vector<double> dampings;
 
@@ -102,6 +105,37 @@ TEST(CoupledIteration, GoesOnWhereACloserMeasureIsBeyondTheTolerance) {
   EXPECT_TRUE(outcome.converged);
   EXPECT_EQ(problem.asked, 2);
   EXPECT_EQ(outcome.outer_iterations, 26);
+}
+
+/// A closer measure that is always a little beyond the tolerance asks for ever smaller errors: the
+/// iteration ends where rounding stops it, not with a residual of nothing.
+TEST(CoupledIteration, FailsWhereACloserMeasureHasNoAnswerOrIsNeverMet) {
+  OneEquation lost(0.25);
+  lost.first_excess = std::numeric_limits<double>::infinity();
+  const CoupledOutcome without = solve_coupled<UnacceleratedSteps>(lost);
+  EXPECT_FALSE(without.converged || without.is_stopped);
+  EXPECT_EQ(lost.asked, 1);
+  EXPECT_GT(without.residual, 0);
+
+  for (const double least_error : {0.0, 1e-3}) {
+    OneEquation never(0.25);
+    never.first_excess = never.later_excess = 3;
+    never.least_error = least_error;
+    const CoupledOutcome outcome = solve_coupled<UnacceleratedSteps>(never);
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_LT(never.asked, 60);
+  }
+}
+
+/// A caller who ends the closer measure ends the solve.
+TEST(CoupledIteration, IsStoppedWhereTheCallerEndsACloserMeasure) {
+  OneEquation problem(0.25);
+  problem.first_excess = std::numeric_limits<double>::infinity();
+  problem.ends_measure = true;
+  const CoupledOutcome outcome = solve_coupled<UnacceleratedSteps>(problem);
+
+  EXPECT_TRUE(outcome.is_stopped);
+  EXPECT_FALSE(outcome.converged);
 }
 
 /// With m = 3 damping, |1 - a m| is 5, 2 and 1/2.

@@ -77,7 +77,6 @@ class Block {
              const std::function<void()>& kernel) {
     while (fibers_.size() < thread_count) fibers_.push_back(std::make_unique<Fiber>());
     threads_.assign(thread_count, Thread{});
-    thread_count_ = thread_count;
     order_ = schedule.order;
     random_.seed(schedule.seed);
     shared_.assign(shared_bytes, std::byte{0xcd});
@@ -93,7 +92,7 @@ class Block {
   void go_on(const std::function<void(unsigned)>& on_resume) {
     {
       const IgnoredAccesses of_emulation;
-      const unsigned warp_count = (thread_count_ + warp_size - 1) / warp_size;
+      const unsigned warp_count = (thread_count() + warp_size - 1) / warp_size;
       while (!is_done()) {
         for (const unsigned warp : ordered(warp_count)) run_warp(warp * warp_size, on_resume);
         if (release_barrier() == State::at_grid) return;
@@ -109,7 +108,7 @@ class Block {
   }
   /// Lets the threads continue that wait for the grid.
   void release_grid() {
-    for (unsigned t = 0; t < thread_count_; ++t) threads_[t].state = State::ready;
+    for (unsigned t = 0; t < thread_count(); ++t) threads_[t].state = State::ready;
   }
   /// What all threads have done is before what follows acquire_order() of any block.
   /// @param at  of the grid
@@ -129,6 +128,9 @@ class Block {
 
   /// A barrier of the whole grid, called in source line `line`.
   void wait_for_grid(int line) { wait(State::at_grid, line); }
+
+  /// Threads of the block.
+  unsigned thread_count() const { return static_cast<unsigned>(threads_.size()); }
 
   /// Lane of the running thread.
   unsigned lane() const { return running_ % warp_size; }
@@ -185,7 +187,7 @@ class Block {
   }
 
   void run_warp(unsigned first, const std::function<void(unsigned)>& on_resume) {
-    const unsigned lane_count = std::min(warp_size, thread_count_ - first);
+    const unsigned lane_count = std::min(warp_size, thread_count() - first);
     LaunchObserver* const observer = LaunchObserver::current();
     do {
       for (const unsigned lane : ordered(lane_count)) {
@@ -217,7 +219,7 @@ class Block {
                   " is outside its own mask");
     }
     const unsigned source = running_ - lane() + self.source_lane;
-    if (!(mask >> self.source_lane & 1) || source >= thread_count_) {
+    if (!(mask >> self.source_lane & 1) || source >= thread_count()) {
       throw Fault("line " + std::to_string(line) + ": lane " + std::to_string(lane()) +
                   " reads lane " + std::to_string(self.source_lane) + ", which takes no part");
     }
@@ -257,7 +259,7 @@ class Block {
   /// First lane that has not reached the exchange in which `lane` waits; warp_size if none.
   unsigned missing_lane(unsigned first, unsigned lane) const {
     const Thread& waiting = threads_[first + lane];
-    for (unsigned l = 0; l < warp_size && first + l < thread_count_; ++l) {
+    for (unsigned l = 0; l < warp_size && first + l < thread_count(); ++l) {
       const Thread& peer = threads_[first + l];
       const bool has_arrived = peer.state == State::at_exchange && peer.mask == waiting.mask &&
                                peer.line == waiting.line;
@@ -269,13 +271,13 @@ class Block {
   template <class Visit>
   void for_each_race(const Visit& visit) const {
     if (!has_thread_sanitizer) return;
-    for (unsigned t = 0; t < thread_count_; ++t) visit(fibers_[t]->race());
+    for (unsigned t = 0; t < thread_count(); ++t) visit(fibers_[t]->race());
   }
   void order_lanes(unsigned first, unsigned mask) {
     if (!has_thread_sanitizer) return;
     char* const at = &of_lanes_[{first, mask}];
     for (const bool is_release : {true, false}) {
-      for (unsigned lane = 0; lane < warp_size && first + lane < thread_count_; ++lane) {
+      for (unsigned lane = 0; lane < warp_size && first + lane < thread_count(); ++lane) {
         const RaceThread& race = fibers_[first + lane]->race();
         if (mask >> lane & 1) is_release ? race.release(at) : race.acquire(at);
       }
@@ -293,7 +295,7 @@ class Block {
   State release_barrier() {
     if (is_done()) return State::done;
     const Thread& first = threads_[0];
-    for (unsigned t = 0; t < thread_count_; ++t) {
+    for (unsigned t = 0; t < thread_count(); ++t) {
       const Thread& thread = threads_[t];
       if (thread.state == State::at_exchange) {
         const unsigned lane = t % warp_size;
@@ -311,7 +313,7 @@ class Block {
     if (LaunchObserver::current() != nullptr) LaunchObserver::current()->barrier_passed();
     release_order(&at_barrier_);
     acquire_order(&at_barrier_);
-    for (unsigned t = 0; t < thread_count_; ++t) threads_[t].state = State::ready;
+    for (unsigned t = 0; t < thread_count(); ++t) threads_[t].state = State::ready;
     return State::at_barrier;
   }
 
@@ -333,7 +335,6 @@ class Block {
 
   std::vector<std::unique_ptr<Fiber>> fibers_;  ///< of threads; kept from launch to launch
   std::vector<Thread> threads_;
-  unsigned thread_count_ = 0;
   unsigned running_ = 0;
   ThreadOrder order_ = ThreadOrder::forward;
   std::minstd_rand random_;

@@ -5,8 +5,9 @@ Usage: check_axes.py COMMAND [EVERY]
 A linear vector field and a linear tensor field on an oblique, a mirrored and a sheared grid are
 imported, warped by a rotation about three axes and exported. SimpleITK and nibabel write the input
 and read the output; what they must find there is computed here. Displacement fields of images of all
-48 orientations (of every EVERYth of them) and three units of length, without a form and of one slice are applied by SimpleITK. Exits 77 when SimpleITK, nibabel or
-h5py is missing, 1 when a value or a field of a header differs.
+48 orientations (of every EVERYth of them) and three units of length, without a form and of one slice
+are applied by SimpleITK. Exits 77 when SimpleITK, nibabel or h5py is missing, 1 when a value or a
+field of a header differs.
 """
 import itertools
 import os

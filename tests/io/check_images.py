@@ -2,10 +2,11 @@
 
 Usage: check_images.py COMMAND [EVERY]
 
-Images of all 48 orientations (of every EVERYth of them) are written here byte by byte in each format, exported to NIfTI by the
-command and compared; the command writes each format from NIfTI, which is parsed here. Where SimpleITK
-is installed, it reads what the command writes and the command what it writes; so does nibabel with .mgh
-and .mgz. Series are compared step by step. Damaged files must be refused in one line. Exits 77 when NumPy is missing, 1 when something differs.
+Images of all 48 orientations (of every EVERYth of them) are written here byte by byte in each
+format, exported to NIfTI by the command and compared; the command writes each format from NIfTI,
+which is parsed here. Where SimpleITK is installed, it reads what the command writes and the command
+what it writes; so does nibabel with .mgh and .mgz. Series are compared step by step. Damaged files
+must be refused in one line. Exits 77 when NumPy is missing, 1 when something differs.
 """
 import gzip
 import itertools
@@ -14,7 +15,7 @@ import sys
 import tempfile
 import zlib
 
-from check_transforms import LPS, Command, chosen_orientations, np, orientations, sitk, write_nifti
+from check_transforms import LPS, Command, arguments, np, orientations, sitk, write_nifti
 
 try:
     import nibabel
@@ -122,9 +123,9 @@ def parse_mgh(path):
     return samples, affine
 
 
-def check_mgh(run, random):
+def check_mgh(run, random, every):
     kinds = itertools.cycle(MGH_TYPES)
-    for n, affine in enumerate(chosen_orientations()):
+    for n, affine in enumerate(itertools.islice(orientations(), 0, None, every)):
         samples = random.integers(0, 100, DIMS).astype(next(kinds))
         for name in ("a.mgh", "a.mgz"):
             write_mgh(run.path(name), samples, affine, name == "a.mgz")
@@ -239,9 +240,9 @@ def expect(what, found, expected):
         sys.exit(f"{what}: affine map\n{affine}\nexpected\n{wanted}")
 
 
-def check_orientations(run, random):
+def check_orientations(run, random, every):
     kinds = itertools.cycle(NRRD_TYPES)
-    for n, affine in enumerate(chosen_orientations()):
+    for n, affine in enumerate(itertools.islice(orientations(), 0, None, every)):
         kind, shape = next(kinds), DIMS + ((3,) if n % 3 == 0 else ())
         samples = random.integers(0, 100, shape).astype(kind)
         packed, big = n % 2 == 1, n % 5 == 0
@@ -322,11 +323,12 @@ def check_refusals(run, random):
 
 
 def main():
+    command, every = arguments(__doc__)
     random = np.random.default_rng(5)
     with tempfile.TemporaryDirectory() as folder:
-        run = Command(sys.argv[1], folder)
-        check_orientations(run, random)
-        check_mgh(run, random)
+        run = Command(command, folder)
+        check_orientations(run, random, every)
+        check_mgh(run, random, every)
         check_series(run, random)
         check_warps(run, random)
         check_refusals(run, random)

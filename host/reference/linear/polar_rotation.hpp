@@ -1,4 +1,5 @@
 /// @file polar_rotation.hpp
+/// The rotation of a polar decomposition.
 #pragma once
 #include <Eigen/Core>
 

@@ -118,7 +118,16 @@ TEST(ResidualCheck, IndefiniteInversesAreNoAnswer) {
     later.add(0.5, square, 1e-9);
     EXPECT_EQ(first.end, CausedProgress::End::lost);
     EXPECT_EQ(later.end, CausedProgress::End::lost);
+    CausedProgress last;  // whose gains were small
+    last.begin(1, 1e-9);
+    for (const double gain : {1.0, 1e-3, 1e-3}) last.add(gain / last.square, 1, 1e-9);
+    last.add(1e-3, square, 1e-9);
+    EXPECT_EQ(last.end, CausedProgress::End::lost);
   }
+  CausedProgress stuck;
+  stuck.begin(1, 1e-9);
+  stuck.add(0, 1, 1e-9);
+  EXPECT_EQ(stuck.end, CausedProgress::End::lost);
   CausedProgress infinite, slow;
   infinite.begin(INFINITY, 1e-9);
   infinite.add(0, INFINITY, 1e-9);  // takes no step

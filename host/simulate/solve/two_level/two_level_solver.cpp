@@ -124,7 +124,7 @@ double TwoLevelSolver::excess(const CoupledOutcome& outcome) {
   if (!check_.is_needed()) return 0;
   checked_ = check_.run(x_, impulse_, contact_velocity_, work_,
                         {options_.tolerance, least_error_ / options_.tolerance},
-                        [&] { return goes_on(outcome.sweeps); });
+                        [&] { return !(is_ended_ = !goes_on(outcome.sweeps)); });
   return checked_ / options_.tolerance;
 }
 
@@ -158,6 +158,7 @@ bool TwoLevelSolver::is_newton_due(const CoupledOutcome& outcome) {
 }
 
 TwoLevelSolver::Next TwoLevelSolver::limit(const CoupledOutcome& outcome) {
+  if (is_ended_) return Next::is_stopped;
   if (sweeps_.operations() > most_operations || is_newton_due(outcome)) return Next::fails;
   return goes_on(outcome.sweeps) ? Next::proceeds : Next::is_stopped;
 }
@@ -184,8 +185,8 @@ CoupledControl::Next TwoLevelSolver::find_by_newton(CoupledOutcome& outcome) {
     outcome.residual = control.residual();
     if (control.is_best()) keep(control.residual());
     if (next == Next::converges) return next;
+    if (is_ended_ || !goes_on(outcome.sweeps)) return Next::is_stopped;
     if (next == Next::fails) break;
-    if (!goes_on(outcome.sweeps)) return Next::is_stopped;
     if (!newton_.step(*system_, defect, error, x_, impulse_, contact_velocity_)) break;
   }
   take_best();
@@ -221,6 +222,7 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
                                      const SoftProblem& problem,
                                      std::vector<Point3>& velocity) {
   clock_ = {};
+  is_ended_ = false;
   system_ = &system;
   problem_ = &problem;
   start_ = &velocity;

@@ -124,6 +124,7 @@ class TwoLevelSolver {
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
   double work_ = 0;                                        ///< of the last impulses
   double checked_ = 0;                                     ///< eta by the last run of check_
+  bool is_ended_ = false;                                  ///< by the caller, within check_
   double least_error_ = 0;                                 ///< of the velocities without contact
   std::int64_t product_operations_ = 0;                    ///< multiplications of a product with A
   /// Multiplications of the iteration after which Newton's method follows, or is asked for its own.

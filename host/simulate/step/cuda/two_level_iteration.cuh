@@ -49,6 +49,7 @@ class TwoLevelIteration {
     numbers_.set(exec_, rows, arrays, points, lists, start, factors);
     resize();
     checked_ = 0;
+    is_ended_ = false;
     CoupledOutcome outcome = solve_coupled<Mixer>(*this);
     outcome.is_result = outcome.converged || outcome.is_stopped;
     if (outcome.converged && checked_ > 0) outcome.residual = checked_;
@@ -119,10 +120,11 @@ class TwoLevelIteration {
                            moved_.view(),
                            {impulse(), contact_velocity(), free_velocity_.view(), none_.view()},
                            work_},
-                          most_at_once, [&] { return goes_on(outcome); });
+                          most_at_once, [&] { return !(is_ended_ = !goes_on(outcome)); });
     return checked_ / options_->tolerance;
   }
   Next limit(const CoupledOutcome& outcome) const {
+    if (is_ended_) return Next::is_stopped;
     if (outcome.sweeps > most_of_solve) return Next::fails;
     return goes_on(outcome) ? Next::proceeds : Next::is_stopped;
   }
@@ -271,6 +273,7 @@ class TwoLevelIteration {
   double work_ = 0;                                     ///< of the last impulses
   bool is_checked_ = false;  ///< whether its own errors are no measure of convergence
   double checked_ = 0;       ///< eta by the last check
+  bool is_ended_ = false;    ///< by the caller, within a check
   Vector results_;
   double* results_data_ = nullptr;
   Vector free_velocity_, none_, stepped_, ahead_;  ///< [3 contacts]
