@@ -80,8 +80,7 @@ class FieldMemory : public testing::Test {
 
   /// image.nii, and a warp field of FSL that shifts it by voxels.
   void write_fsl_inputs() const {
-    Volume image = read_volume(folder / "volume.vtkhdf", "density");
-    image.grid = scenes::unit_grid(120, 112, 104);
+    const Volume image = read_volume(folder / "volume.vtkhdf", "density");
     write_nifti(folder / "image.nii", image);
     ArrayHeader header{"values", PixelType::float32, 1, default_nifti_facts(1)};
     header.nifti->intent_code = 2006;
@@ -154,11 +153,12 @@ TEST_F(FieldMemory, StatesPartsAndRefusesWhatDoesNotFit) {
 TEST_F(FieldMemory, UnpacksFieldsOnlyForParts) {
   write_fsl_inputs();
   EXPECT_EQ(run_command(folder, {"export", "field.vtkhdf", "-o", "field.nii.gz"}).exit_code, 0);
-  const auto field_bytes = static_cast<double>(12 * grid.voxel_count());
+  const auto output_bytes = static_cast<double>(4 * grid.voxel_count());
+  const double field_bytes = 3 * output_bytes;
   for (const char* field : {"field.nii.gz", "fsl.nii.gz"}) {
     const Names before = folder.names();
-    const auto planned = [&](const Names& more) {
-      Names words{"-o", "a.vtkhdf", "--dry-run", "--report", "plan.json"};
+    const auto planned = [&](const Names& more, const std::string& output = "a.vtkhdf") {
+      Names words{"-o", output, "--dry-run", "--report", "plan.json"};
       words.insert(words.end(), more.begin(), more.end());
       const CommandResult result = warp(field, words, "image.nii");
       EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -168,6 +168,10 @@ TEST_F(FieldMemory, UnpacksFieldsOnlyForParts) {
     };
     EXPECT_EQ(planned({}), 0);
     EXPECT_EQ(planned({"--memory", limit}), field_bytes);
+    EXPECT_EQ(planned({"--memory", "48M"}, "a.nii"), field_bytes + output_bytes);
+    EXPECT_EQ(planned({"--memory", limit}, "a.nrrd"), field_bytes);
+    EXPECT_EQ(planned({"--compress", "1"}, "a.nrrd"), output_bytes);
+    EXPECT_EQ(planned({}, "a.mgz"), output_bytes);
     EXPECT_EQ(folder.names(), before);
     EXPECT_EQ(warp(field, {"-o", "parts.nii", "--memory", limit}, "image.nii").exit_code, 0);
     // Whole fields need no temporary folder.
