@@ -15,7 +15,7 @@ set(TETWARP_HAS_VTK FALSE)
 if(NOT TETWARP_VTK STREQUAL "OFF")
   set(tetwarp_vtk_modules
     IOExodus IOXML IOXMLParser IOLegacy IOGeometry IOPLY IOCore FiltersCore CommonExecutionModel
-    CommonDataModel CommonCore)
+    CommonDataModel CommonMath CommonCore)
   find_package(VTK 9 QUIET COMPONENTS ${tetwarp_vtk_modules})
   set(TETWARP_HAS_VTK ${VTK_FOUND})
   if(TETWARP_VTK STREQUAL "ON" AND NOT VTK_FOUND)

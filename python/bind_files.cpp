@@ -174,6 +174,7 @@ void write_mesh_file(const std::string& path,
     return true;
   });
 }
+
 nb::tuple strings_of(std::span<const std::string_view> texts) {
   nb::list all;
   for (const std::string_view text : texts) all.append(nb::str(text.data(), text.size()));

@@ -80,19 +80,18 @@ class FieldMemory : public testing::Test {
 
   /// image.nii, and a warp field of FSL that shifts it by voxels.
   void write_fsl_inputs() const {
-    Volume image = read_volume(folder / "volume.vtkhdf", "density");
-    image.grid = scenes::unit_grid(120, 112, 104);
+    const Volume image = read_volume(folder / "volume.vtkhdf", "density");
     write_nifti(folder / "image.nii", image);
     ArrayHeader header{"values", PixelType::float32, 1, default_nifti_facts(1)};
     header.nifti->intent_code = 2006;
-    BlockVolumeWriter writer(folder / "fsl.nii.gz", image.grid, {header}, {}, true);
+    BlockVolumeWriter writer(folder / "fsl.nii.gz", grid, {header}, {.compress = 1}, true);
     std::vector<float> shift(image.samples<float>().size());
     for (int axis = 0; axis < 3; ++axis) {
       for (std::size_t n = 0; n < shift.size(); ++n) {
         shift[n] = static_cast<float>(axis + std::sin(static_cast<double>(n) / 30000));
       }
       writer.begin_step(axis);
-      writer.write(0, {{0, 0, 0}, image.grid.dims}, shift.data());
+      writer.write(0, {{0, 0, 0}, grid.dims}, shift.data());
     }
     writer.finish();
   }
@@ -154,11 +153,12 @@ TEST_F(FieldMemory, StatesPartsAndRefusesWhatDoesNotFit) {
 TEST_F(FieldMemory, UnpacksFieldsOnlyForParts) {
   write_fsl_inputs();
   EXPECT_EQ(run_command(folder, {"export", "field.vtkhdf", "-o", "field.nii.gz"}).exit_code, 0);
-  const auto field_bytes = static_cast<double>(12 * grid.voxel_count());
+  const auto output_bytes = static_cast<double>(4 * grid.voxel_count());
+  const double field_bytes = 3 * output_bytes;
   for (const char* field : {"field.nii.gz", "fsl.nii.gz"}) {
     const Names before = folder.names();
-    const auto planned = [&](const Names& more) {
-      Names words{"-o", "a.vtkhdf", "--dry-run", "--report", "plan.json"};
+    const auto planned = [&](const Names& more, const std::string& output = "a.vtkhdf") {
+      Names words{"-o", output, "--dry-run", "--report", "plan.json"};
       words.insert(words.end(), more.begin(), more.end());
       const CommandResult result = warp(field, words, "image.nii");
       EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -168,6 +168,9 @@ TEST_F(FieldMemory, UnpacksFieldsOnlyForParts) {
     };
     EXPECT_EQ(planned({}), 0);
     EXPECT_EQ(planned({"--memory", limit}), field_bytes);
+    EXPECT_EQ(planned({"--memory", "48M"}, "a.nii"), field_bytes + output_bytes);
+    EXPECT_EQ(planned({"--compress", "1"}, "a.nrrd"), output_bytes);
+    EXPECT_EQ(planned({}, "a.mgz"), output_bytes);
     EXPECT_EQ(folder.names(), before);
     EXPECT_EQ(warp(field, {"-o", "parts.nii", "--memory", limit}, "image.nii").exit_code, 0);
     // Whole fields need no temporary folder.
@@ -178,27 +181,6 @@ TEST_F(FieldMemory, UnpacksFieldsOnlyForParts) {
     EXPECT_TRUE(text_of(folder / "parts.nii") == text_of(folder / "whole.nii")) << field;
     EXPECT_TRUE(fs::remove(folder / "parts.nii") && fs::remove(folder / "whole.nii"));
     EXPECT_EQ(folder.names(), before);
-  }
-}
-
-/// Numbers of a field that are not finite are named.
-TEST_F(FieldMemory, NamesANumberOfItksThatIsNotFinite) {
-  const Grid coarse = scenes::oblique_grid(8, 7, 6);
-  std::vector<float> numbers(static_cast<std::size_t>(3 * coarse.voxel_count()), 0.5F);
-  numbers[701] = std::nanf("");
-  write_itk_field(folder / "bad.h5", coarse, numbers);
-
-  for (const Names& more : {Names{}, {"--memory", "50M"}, {"--memory", "50M", "--dry-run"}}) {
-    Names words{"-o", "a.vtkhdf"};
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = warp("bad.h5", words);
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_TRUE(result.has_one_line_error()) << result.err;
-    EXPECT_NE(
-        result.err.find("bad.h5: /TransformGroup/0/TransformParameters[701]: is not a number"),
-        std::string::npos)
-        << result.err;
-    EXPECT_FALSE(fs::exists(folder / "a.vtkhdf"));
   }
 }
 
@@ -255,24 +237,45 @@ TEST_F(FieldMemory, PlansEveryStepOfASeries) {
   }
 }
 
-/// By a mesh and by a field, with and without --dry-run.
-TEST_F(FieldMemory, RefusesWhatTheDiskHasNoRoomFor) {
-  write_mesh(folder / "mesh.vtkhdf", box_mesh(), shifts({1}), {0});
-  const Names before = folder.names();
-  for (const char* deformation : {"field.vtkhdf", "mesh.vtkhdf"}) {
-    for (const bool is_dry : {false, true}) {
-      Names words{
-          "-o",        "a.nii.gz",       "--memory", "200M",   "--dims", "40000,40000,40000",
-          "--spacing", "0.01,0.01,0.01", "--array",  "density"};
-      if (is_dry) words.emplace_back("--dry-run");
-      const CommandResult result = warp(deformation, words);
-      EXPECT_EQ(result.exit_code, 1) << deformation;
-      EXPECT_TRUE(result.has_one_line_error()) << result.err;
-      EXPECT_NE(result.err.find("a.nii.gz: temporary files beside it take 232.8 TiB of disk"),
-                std::string::npos)
-          << result.err;
-      EXPECT_EQ(folder.names(), before);
-    }
+/// Numbers of a field that are not finite are named.
+TEST(FieldFile, NamesANumberOfItksThatIsNotFinite) {
+  const Scene scene;
+  const Grid grid = scenes::oblique_grid(8, 7, 6);
+  std::vector<float> numbers(static_cast<std::size_t>(3 * grid.voxel_count()), 0.5F);
+  numbers[701] = std::nanf("");
+  write_itk_field(scene / "bad.h5", grid, numbers);
+
+  const CommandResult result =
+      run_command(scene, {"warp", "volume.vtkhdf", "bad.h5", "-o", "a.vtkhdf"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("bad.h5: /TransformGroup/0/TransformParameters[701]: is not a number"),
+            std::string::npos)
+      << result.err;
+  EXPECT_FALSE(fs::exists(scene / "a.vtkhdf"));
+}
+
+/// By a field, with --dry-run, too, and by a mesh.
+TEST(FieldFile, RefusesWhatTheDiskHasNoRoomFor) {
+  const Scene scene;
+  const Grid grid = ramp_volume<float>().grid;
+  write_itk_field(scene / "field.h5", grid,
+                  std::vector<float>(3 * ramp_volume<float>().samples<float>().size()));
+  write_mesh(scene / "bent.vtkhdf", box_mesh(), shifts({1}), {0});
+  const Names before = scene.names();
+  for (const Names& more : {Names{"field.h5"}, {"field.h5", "--dry-run"}, {"bent.vtkhdf"}}) {
+    Names words{"warp", "volume.vtkhdf"};
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"-o", "a.nii.gz", "--memory", "200M", "--dims", "40000,40000,40000",
+                               "--spacing", "50,50,50"});
+    const CommandResult result = run_command(scene, words);
+    EXPECT_EQ(result.exit_code, 1) << more.front();
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_NE(result.err.find("a.nii.gz: temporary files beside it take 232.8 TiB of disk"),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(scene.names(), before);
   }
 }
 }  // namespace

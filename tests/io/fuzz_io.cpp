@@ -1,12 +1,14 @@
 /// @file fuzz_io.cpp
-/// Usage: fuzz_io SECONDS SEED
+/// Usage: fuzz_io SECONDS SEED [NAME...]
 ///
 /// Damages good files, by bytes and by values, and reads them with every reader. Success or an
 /// IoError passes; a crash, a hang, another exception or a large allocation fails. Files are read
 /// in forked children, so that crashes can be counted; those inside HDF5 are counted separately.
+/// With names, of files that write_seeds() writes, only these are damaged.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <sys/mman.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,13 +25,17 @@
 #include <random>
 #include <string>
 #include <tetwarp/point_file.hpp>
+#include <tetwarp/scene_io.hpp>
+#include <tetwarp/surface_reader.hpp>
 #include <tetwarp/transform_file.hpp>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "tests/io/fuzz_bytes.hpp"
 #include "tests/io/fuzz_contact.hpp"
 #include "tests/io/fuzz_memory.hpp"
+#include "tests/io/fuzz_transforms.hpp"
 #include "tests/io/fuzz_values.hpp"
 #include "tests/support/curved_scenes.hpp"
 #include "tests/support/io_files.hpp"
@@ -38,7 +44,8 @@ namespace {
 using namespace tetwarp;
 using Clock = std::chrono::steady_clock;
 
-constexpr unsigned seconds_per_file = 5;
+constexpr time_t seconds_per_file = 5;           // of the processor
+constexpr unsigned wall_seconds_per_file = 120;  // also on a busy machine
 constexpr std::int64_t files_per_child = 64;
 
 /// Exit codes of a child that ends before its last file.
@@ -69,49 +76,6 @@ void on_crash(int) {
   _exit(crash);
 }
 
-std::string repeated(const std::string& word, int count) {
-  std::string text;
-  for (int n = 0; n < count; ++n) text += word;
-  return text;
-}
-
-/// A composite of a displacement field and an affine transform, as ITK's HDF5 writer lays it out.
-void write_itk_seed(const std::string& path) {
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  const hid_t group = H5Gcreate2(file, "TransformGroup", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  const auto write = [](hid_t parent, const char* name, hid_t type, hsize_t count,
-                        const void* data) {
-    const hid_t space = H5Screate_simple(1, &count, nullptr);
-    const hid_t set = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
-    H5Dclose(set);
-    H5Sclose(space);
-  };
-  const hid_t text = H5Tcopy(H5T_C_S1);
-  H5Tset_size(text, H5T_VARIABLE);
-  const std::vector<double> field(24, 0.5), affine{1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 3, 4};
-  const std::vector<double> grid{2, 2, 2, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const std::vector<double> center{0, 0, 0};
-  const char* const types[] = {"CompositeTransform_double_3_3",
-                               "DisplacementFieldTransform_double_3_3",
-                               "AffineTransform_double_3_3"};
-  for (int n = 0; n < 3; ++n) {
-    const hid_t one =
-        H5Gcreate2(group, std::to_string(n).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    write(one, "TransformType", text, 1, &types[n]);
-    const std::vector<double>& parameters = n == 1 ? field : affine;
-    const std::vector<double>& fixed = n == 1 ? grid : center;
-    if (n > 0) {
-      write(one, "TransformParameters", H5T_NATIVE_DOUBLE, parameters.size(), parameters.data());
-      write(one, "TransformFixedParameters", H5T_NATIVE_DOUBLE, fixed.size(), fixed.data());
-    }
-    H5Gclose(one);
-  }
-  H5Tclose(text);
-  H5Gclose(group);
-  H5Fclose(file);
-}
-
 void write_seeds(const test::ScratchFolder& folder) {
   const Volume a = test::counting_volume(PixelType::int16, 1, "a");
   const Volume b = test::counting_volume(PixelType::float32, 3, "b");
@@ -122,6 +86,10 @@ void write_seeds(const test::ScratchFolder& folder) {
   writer.repeat(1);
   writer.append(2, {&a, &b});
   writer.finish();
+  const Volume field = test::counting_volume(PixelType::float32, 3, "tetwarp_displacement");
+  write_volumes(folder / "field", {&field}, {.compress = 3});
+  write_nifti(folder / "field.nii.gz", field, Axes::lps);
+  write_surface(folder / "surface", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
   write_mesh(folder / "mesh", test::two_tets());
   write_mesh(folder / "moving", test::two_tets(), test::slides({0, 1, 2}));
   write_mesh(folder / "curved", test::with_mid_nodes(test::two_tets()));
@@ -167,27 +135,7 @@ void write_seeds(const test::ScratchFolder& folder) {
   write(
       "p.json",
       R"({"markups": [{"coordinateSystem": "LPS", "controlPoints": [{"position": [1, 2, 3]}]}]})");
-  write("t.tfm",
-        "#Insight Transform File V1.0\nTransform: Euler3DTransform_double_3_3\n"
-        "Parameters: 0 0 0.2 5 0 0\nFixedParameters: 0 0 0 0\n");
-  write("b.tfm",
-        "#Insight Transform File V1.0\nTransform: CompositeTransform_double_3_3\n"
-        "Transform: BSplineTransform_double_3_3\nParameters:" +
-            repeated(" 0.5", 192) +
-            "\nFixedParameters: 4 4 4 0 0 0 1 1 1 1 0 0 0 1 0 0 0 1\n"
-            "Transform: DisplacementFieldTransform_double_3_3\nParameters:" +
-            repeated(" 1", 24) + "\nFixedParameters: 2 2 2 0 0 0 1 1 1 1 0 0 0 1 0 0 0 1\n");
-  write_itk_seed(folder / "itk");
-  std::string matlab;
-  for (const auto& [variable, count] :
-       {std::pair("AffineTransform_double_3_3", 12), {"fixed", 3}}) {
-    const std::int32_t head[5] = {0, count, 1, 0,
-                                  static_cast<std::int32_t>(std::strlen(variable)) + 1};
-    matlab.append(reinterpret_cast<const char*>(head), sizeof head);
-    matlab.append(variable, std::strlen(variable) + 1)
-        .append(static_cast<std::size_t>(8 * count), '\0');
-  }
-  write("t.mat", matlab);
+  test::write_transform_seeds(folder);
 }
 
 /// Formats that are chosen by the end of a name, and NRRD.
@@ -196,9 +144,9 @@ constexpr std::array<const char*, 14> named_seeds = {
     "i.mgz",  "p.csv",       "p.fcsv",     "p.json", "t.tfm",      "b.tfm",     "t.mat"};
 
 std::vector<std::string> seed_names() {
-  std::vector<std::string> names = {"volume", "packed",   "temporal", "mesh",
-                                    "moving", "curved",   "v.nii",    "v.nii.gz",
-                                    "v2.nii", "s.nii.gz", "itk",      "fsl.nii"};
+  std::vector<std::string> names = {"volume", "packed",   "temporal", "field",        "mesh",
+                                    "moving", "curved",   "surface",  "v.nii",        "v.nii.gz",
+                                    "v2.nii", "s.nii.gz", "fsl.nii",  "field.nii.gz", "itk"};
   names.insert(names.end(), test::contact_seeds.begin(), test::contact_seeds.end());
   names.insert(names.end(), named_seeds.begin(), named_seeds.end());
   return names;
@@ -222,6 +170,22 @@ bool reads(const Op& op) {
   }
 }
 
+/// Reads the last voxel of each field of a transform.
+void read_field_parts(const std::string& path) {
+  TransformParts parts = open_transform(path, {.image = path});
+  auto* const chain = std::get_if<TransformChain>(&parts.file.transform);
+  for (std::size_t n = 0; n < parts.fields.size(); ++n) {
+    const auto* const field = chain == nullptr
+                                  ? std::get_if<DisplacementField>(&parts.file.transform)
+                                  : std::get_if<DisplacementField>(&chain->links[n]);
+    if (field == nullptr) continue;
+    std::array<float, 3> displacement{};
+    Region last{{}, field->grid.dims};
+    for (std::size_t axis = 0; axis < 3; ++axis) last.begin[axis] = last.end[axis] - 1;
+    parts.fields[n].read(last, displacement.data());
+  }
+}
+
 /// Runs every reader on one file. @returns true when the reader of its kind succeeded
 bool read_all(const std::string& path) {
   reads([&] { kind_of(path); });
@@ -236,6 +200,7 @@ bool read_all(const std::string& path) {
     }
   });
   reads([&] { read_volume(path); });
+  reads([&] { read_volume(path, "", 0, {.are_labels = true}); });
   reads([&] {
     std::array<std::byte, 72> voxel{};  // nine components of eight bytes
     VolumeReader(path).read({{0, 0, 0}, {1, 1, 1}}, voxel.data());
@@ -246,9 +211,17 @@ bool read_all(const std::string& path) {
       reader.read_step(static_cast<std::int64_t>(step));
     }
   });
+  const bool is_surface = reads([&] {
+    is_surface_file(path);
+    read_surface(path);
+    const SurfaceReader reader(path);
+    for (std::int64_t step = 0; step < reader.step_count(); ++step) reader.points(step);
+  });
   const bool is_transform = reads([&] { read_transform(path, {.image = path}); });
+  reads([&] { read_field_parts(path); });
   const bool is_contact = reads([&] { test::read_contact_file(path, path + "-solved"); });
-  return is_volume || is_mesh || is_transform || is_contact || reads([&] { read_nifti(path); });
+  return is_volume || is_mesh || is_surface || is_transform || is_contact ||
+         reads([&] { read_nifti(path); });
 }
 
 /// Reads a file whose name ends as the format wants. @returns true when one reader succeeded
@@ -264,12 +237,14 @@ bool read_named(const std::string& path, const std::string& extension) {
   return is_points || is_transform || read_all(named);
 }
 
-/// The file number `index` of this seed: the same in every run.
+/// The file number `index` of this seed and these names: the same in every run.
 /// @returns the end of its name, where the format is chosen by it
-std::string make_file(const test::ScratchFolder& folder, std::uint64_t seed, std::int64_t index) {
+std::string make_file(const test::ScratchFolder& folder,
+                      const std::vector<std::string>& names,
+                      std::uint64_t seed,
+                      std::int64_t index) {
   test::Random random(seed, static_cast<std::uint64_t>(index));
-  static const std::vector<std::string> seeds = seed_names();
-  const std::string& name = seeds[random.below(seeds.size())];
+  const std::string& name = names[random.below(names.size())];
   std::filesystem::copy_file(folder / name, folder / "damaged",
                              std::filesystem::copy_options::overwrite_existing);
   const bool is_named =
@@ -285,6 +260,7 @@ std::string make_file(const test::ScratchFolder& folder, std::uint64_t seed, std
 
 /// Runs in a child: files from `first` on.
 [[noreturn]] void read_files(const test::ScratchFolder& folder,
+                             const std::vector<std::string>& names,
                              std::uint64_t seed,
                              std::int64_t first,
                              Clock::time_point end,
@@ -293,10 +269,12 @@ std::string make_file(const test::ScratchFolder& folder, std::uint64_t seed, std
     std::signal(signal, on_crash);
   }
   for (std::int64_t index = first; index < first + files_per_child && Clock::now() < end; ++index) {
-    alarm(seconds_per_file);
+    alarm(wall_seconds_per_file);
+    const itimerval limit{{0, 0}, {seconds_per_file, 0}};
+    setitimer(ITIMER_PROF, &limit, nullptr);
     ++counts.files;
     try {
-      const std::string extension = make_file(folder, seed, index);
+      const std::string extension = make_file(folder, names, seed, index);
       const bool is_read = extension.empty() ? read_all(folder / "damaged")
                                              : read_named(folder / "damaged", extension);
       ++(is_read ? counts.read : counts.rejected);
@@ -309,7 +287,9 @@ std::string make_file(const test::ScratchFolder& folder, std::uint64_t seed, std
 }
 
 const char* text_of(int status) {
-  if (WIFSIGNALED(status)) return WTERMSIG(status) == SIGALRM ? "hang" : "killed";
+  if (WIFSIGNALED(status)) {
+    return WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGPROF ? "hang" : "killed";
+  }
   switch (WEXITSTATUS(status)) {
     case crash_in_hdf5:
       return "crash inside HDF5";
@@ -325,7 +305,7 @@ const char* text_of(int status) {
 }
 
 /// Reads damaged files for `seconds`. @returns true when none of them was a failure
-bool fuzz(int seconds, std::uint64_t seed) {
+bool fuzz(int seconds, std::uint64_t seed, const std::vector<std::string>& names) {
   const auto end = Clock::now() + std::chrono::seconds(seconds);
   const test::ScratchFolder folder;
   write_seeds(folder);
@@ -340,7 +320,7 @@ bool fuzz(int seconds, std::uint64_t seed) {
     const std::int64_t first = counts.files;
     const pid_t child = fork();
     if (child < 0) throw std::runtime_error("no child process");
-    if (child == 0) read_files(folder, seed, first, end, counts);
+    if (child == 0) read_files(folder, names, seed, first, end, counts);
     int status = 0;
     waitpid(child, &status, 0);
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;
@@ -370,12 +350,15 @@ extern "C" [[gnu::visibility("default")]] const char* __ubsan_default_options() 
 // NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: fuzz_io SECONDS SEED\n");
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: fuzz_io SECONDS SEED [NAME...]\n");
     return 2;
   }
   try {
-    return fuzz(std::atoi(argv[1]), static_cast<std::uint64_t>(std::atoll(argv[2]))) ? 0 : 1;
+    std::vector<std::string> names(argv + 3, argv + argc);
+    if (names.empty()) names = seed_names();
+    const auto seed = static_cast<std::uint64_t>(std::atoll(argv[2]));
+    return fuzz(std::atoi(argv[1]), seed, names) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

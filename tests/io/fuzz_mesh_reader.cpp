@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "io/reader/image_readers.hpp"
 #include "io/reader/mesh_readers.hpp"
 #include "io/reader/mesh_sender.hpp"
 
@@ -61,5 +62,8 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) {
     std::signal(signal, on_crash);
   }
-  std::_Exit(tetwarp::send_result(argc, argv, {tetwarp::read_foreign_mesh}));
+  std::_Exit(tetwarp::send_result(
+      argc, argv,
+      {tetwarp::read_foreign_mesh, tetwarp::read_vtk_points, tetwarp::place_vtk_points,
+       tetwarp::read_foreign_image, tetwarp::read_foreign_samples}));
 }
