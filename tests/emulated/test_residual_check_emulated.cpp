@@ -47,11 +47,8 @@ TEST(ResidualCheckEmulated, TiedBodiesMeetTheTolerance) {
 
 TEST(LongResidualCheckEmulated, TiedBodiesMeetTheTolerance) {
   for (const double youngs : {1e4, 1e6, 1e8}) {
-    for (const double spring : {1e2, 1e4}) {
-      for (const double adhesion : {0.0, 4e7}) {
-        expect_tied_bodies_meet({youngs, spring, adhesion, 1e-5, 2});
-      }
-    }
+    expect_tied_bodies_meet({youngs, 1e2, 4e7, 1e-4, 1});
+    expect_tied_bodies_meet({youngs, 1e4, 0, 1e-4, 1});
   }
 }
 
