@@ -18,10 +18,8 @@ constexpr std::int64_t most_operations = 1'000'000'000;
 // Steps of Newton's method, after which the iteration goes on.
 constexpr std::int64_t most_newton = 40;
 // Multiplications of a factorization for Newton's method: where it comes first, about a
-// millisecond, and where it follows.
+// millisecond, and where it follows once the iteration has had as many.
 constexpr std::int64_t most_at_first = 4'000'000, most_later = 400'000'000;
-// It follows once the iteration has had so many times those of a factorization.
-constexpr std::int64_t newton_worth = 3;
 constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 // Of the tolerance, at which they end: on stiff cloth the blocks D^-1, in which laws are measured,
 // are far below A^-1. A step or two more take little.
@@ -80,7 +78,7 @@ TwoLevelSolver::Next TwoLevelSolver::start(double damping, CoupledOutcome& outco
   prepare(damping);
   checked_ = 0;
   has_newton_ = false;
-  newton_at_ = has_elastic() ? never : newton_worth * most_at_first;
+  newton_at_ = has_elastic() ? never : most_at_first;
   if (has_elastic() || !newton_.set(*system_, lists(), most_at_first)) return Next::proceeds;
   newton_at_ = never;
   const Next end = find_by_newton(outcome);
@@ -152,7 +150,7 @@ bool TwoLevelSolver::is_newton_due(const CoupledOutcome& outcome) {
   };
   if (!has_newton_ && is_over()) {
     has_newton_ = newton_.set(*system_, lists(), most_later);
-    newton_at_ = has_newton_ ? newton_worth * newton_.operations() : never;
+    newton_at_ = has_newton_ ? newton_.operations() : never;
   }
   return has_newton_ && is_over();
 }

@@ -27,7 +27,7 @@ namespace tetwarp {
 ///
 /// Without elastic bodies and friction Newton's method (TouchingNewton) comes first where a
 /// factorization of A with its contacts has few multiplications, else once the iteration has had
-/// some times as many; where it fails, the iteration goes on.
+/// as many; where it fails, the iteration goes on.
 ///
 /// Anderson's method accelerates v; with elastic bodies only from the second iteration on, and only
 /// while the error of the equations is larger than that of the laws. The iteration has converged
