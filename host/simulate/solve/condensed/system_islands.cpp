@@ -3,6 +3,7 @@
 #include "host/simulate/solve/condensed/system_islands.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "host/base/index_of.hpp"
 
@@ -22,6 +23,7 @@ bool SystemIslands::set(const SystemRows& rows, const ContactIslands& islands) {
   bool is_new = renew(rows.block_of, block_of_);
   is_new = renew(rows.start, start_) || is_new;
   is_new = renew(rows.column, column_) || is_new;
+  is_new = is_new || std::ssize(of_row_) != rows.unknown_count;
   if (!is_new) return false;
   ranges_.assign(index_of(islands.count()), {});
   of_row_.clear();
