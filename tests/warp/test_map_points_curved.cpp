@@ -16,11 +16,11 @@ namespace {
 class MapPointsCurved : public EachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, MapPointsCurved, each_backend, name_of_backend);
 
-CurvedMesh cubes() {
+CurvedMesh small_cubes() {
   return with_mid_nodes(scenes::lattice({3, 3, 3}, {0, 0, 0}, {12, 12, 12}));
 }
 
-/// Within the cube of cubes(), and a little around it.
+/// Within the cube of small_cubes(), and a little around it.
 std::vector<Point3> scattered(std::size_t count) {
   std::vector<Point3> points(count);
   for (std::size_t p = 0; p < count; ++p) {
@@ -32,7 +32,7 @@ std::vector<Point3> scattered(std::size_t count) {
 }
 
 TEST_P(MapPointsCurved, FollowAQuadraticMotionAndReturn) {
-  const CurvedMesh mesh = cubes();
+  const CurvedMesh mesh = small_cubes();
   std::vector<Point3> deformed;
   for (const Point3& x : mesh.mesh.rest_positions) deformed.push_back(quadratic(x));
   const std::vector<Point3> points = scattered(300);
@@ -58,7 +58,7 @@ TEST_P(MapPointsCurved, FollowAQuadraticMotionAndReturn) {
 }
 
 TEST_P(MapPointsCurved, HaveTheBitsOfFourNodesWhereEdgesAreStraight) {
-  const CurvedMesh mesh = cubes();
+  const CurvedMesh mesh = small_cubes();
   const std::vector<Point3> deformed = straightened(mesh, shaken(mesh.mesh.rest_positions, 0.8, 2));
   for (const bool inverse : {false, true}) {
     const MapPointsOptions options = {.inverse = inverse, .backend = GetParam()};
@@ -74,7 +74,7 @@ TEST_P(MapPointsCurved, HaveTheBitsOfFourNodesWhereEdgesAreStraight) {
 /// Gently and wildly bent edges: of folded cells some points have no place.
 TEST_P(MapPointsCurved, AreTheReference) {
   if (GetParam() == Backend::reference) GTEST_SKIP() << "the reference is not compared with itself";
-  CurvedMesh mesh = cubes();
+  CurvedMesh mesh = small_cubes();
   mesh.mesh.rest_positions = shaken(mesh.mesh.rest_positions, 0.3, 4);
   mesh.mid_nodes[5] = no_mid_nodes;
   for (const bool inverse : {false, true}) {
