@@ -68,8 +68,8 @@ TEST(ResidualCheckEmulated, SheetsWithFrictionAreNotCalledConvergedTooEarly) {
   expect_sheets_meet(1e3, 4, 2);
 }
 
-TEST(LongResidualCheckEmulated, SheetsWithFrictionAreNotCalledConvergedTooEarly) {
-  for (const double stiffness : {1e3, 1e5}) expect_sheets_meet(stiffness, 6, 2);
+TEST(LongResidualCheckEmulated, StiffSheetsWithFrictionAreNotCalledConvergedTooEarly) {
+  expect_sheets_meet(1e5, 4, 2);
 }
 
 /// The first step of a sheet on the device.
