@@ -7,9 +7,10 @@
 #include <cstdint>
 
 #include "kernels/base/view.hpp"
-#include "kernels/warp/hex_map.hpp"
+#include "kernels/warp/map_inverse.hpp"
 #include "kernels/warp/tet_gradient.hpp"
 #include "kernels/warp/tet_setup.hpp"
+#include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp {
 
@@ -86,10 +87,9 @@ TETWARP_HD void map_curve(const CurveTerms& curve, const double* u, double* x, M
 /// uses straight faces in place of curved ones.
 constexpr double curve_margin = 0.25;
 
-/// How near to its target the iteration ends [voxel], and how near it must have come: the
-/// coordinates of the largest cells are not finer than that.
-constexpr double curve_tolerance = 0x1p-32, curve_reach = 0x1p-24;
-constexpr int max_curve_steps = 30;
+/// How near to its target the iteration must have come [voxel]: the coordinates of the largest
+/// cells are not finer than that.
+constexpr double curve_reach = 0x1p-24;
 
 /// Whether the map is not folded at u, and u lies in the tetrahedron or within curve_margin of it.
 /// The map must have the orientation of the straight tetrahedron.
@@ -105,40 +105,13 @@ TETWARP_HD bool is_sound(const CurveTerms& curve, const double* u, const Matrix3
   return determinant(straight) > 0 ? now > 0 : now < 0;
 }
 
-/// Finds the coordinates u of position `target` by damped Newton iteration from the given u. Steps
-/// are halved until the distance decreases; stops where no step decreases it.
-/// @returns false where it has not come near, or the place is not sound
+/// Finds the coordinates u of position `target` from the given u.
+/// @returns false where the iteration has not come near, or the place is not sound
 TETWARP_HD_RARE bool invert_curve(const CurveTerms& curve, const double* target, double* u) {
-  constexpr int max_halvings = 6;
-  const auto distance = [](const double* left) {
-    return max_of(fabs(left[0]), max_of(fabs(left[1]), fabs(left[2])));
-  };
-  double x[3], left[3];
   Matrix3 gradient;
-  map_curve(curve, u, x, gradient);
-  for (int axis = 0; axis < 3; ++axis) left[axis] = target[axis] - x[axis];
-  double far = distance(left);
-  for (int step = 0; step < max_curve_steps && far > curve_tolerance; ++step) {
-    double full[3];
-    if (!hex_step(gradient, left, full)) return false;
-    const double before = far;
-    double share = 1;
-    for (int halving = 0; halving <= max_halvings && far >= before; ++halving, share *= 0.5) {
-      double tried[3], tried_left[3];
-      Matrix3 tried_gradient;
-      for (int axis = 0; axis < 3; ++axis) tried[axis] = u[axis] + share * full[axis];
-      map_curve(curve, tried, x, tried_gradient);
-      for (int axis = 0; axis < 3; ++axis) tried_left[axis] = target[axis] - x[axis];
-      if (!(distance(tried_left) < before)) continue;
-      far = distance(tried_left);
-      gradient = tried_gradient;
-      for (int axis = 0; axis < 3; ++axis) {
-        u[axis] = tried[axis];
-        left[axis] = tried_left[axis];
-      }
-    }
-    if (far >= before) break;
-  }
+  const double far =
+      invert_map([&curve](const double* v, double* x, Matrix3& at) { map_curve(curve, v, x, at); },
+                 [](double v) { return v; }, target, u, gradient);
   return far <= curve_reach && is_sound(curve, u, gradient);
 }
 

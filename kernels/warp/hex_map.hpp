@@ -9,6 +9,7 @@
 
 #include "kernels/base/hex_view.hpp"
 #include "kernels/base/view.hpp"
+#include "kernels/warp/map_inverse.hpp"
 #include "kernels/warp/tet_gradient.hpp"
 #include "kernels/warp/volume_sample.hpp"
 
@@ -75,65 +76,17 @@ TETWARP_HD void map_hex(const HexTerms& hex, const double* u, double* x, Matrix3
   }
 }
 
-/// Newton's step of local coordinates for a map that is `left` short of its target.
-/// @returns false where the map is singular
-TETWARP_HD bool hex_step(const Matrix3& gradient, const double* left, double* step) {
-  const Matrix3 cofactor = cofactors(gradient);
-  const double det = gradient.at[0][0] * cofactor.at[0][0] + gradient.at[0][1] * cofactor.at[0][1] +
-                     gradient.at[0][2] * cofactor.at[0][2];
-  if (det == 0) return false;
-  const double scale = 1.0 / det;
-  for (int axis = 0; axis < 3; ++axis) {
-    step[axis] = scale * (cofactor.at[0][axis] * left[0] + cofactor.at[1][axis] * left[1] +
-                          cofactor.at[2][axis] * left[2]);
-  }
-  return true;
-}
-
 /// How far outside of [0, 1] local coordinates may lie. Ownership uses two triangles in place of a
 /// curved face, so some owned voxels are slightly outside of the hexahedron.
 constexpr double hex_margin = 0.25;
 
-/// How near to its target the iteration below ends [voxel]: far below the quantum.
-constexpr double hex_tolerance = 0x1p-32;
-constexpr int max_hex_steps = 30;
-
-/// Finds the local coordinates u of position `target` by damped Newton iteration from the given u.
-/// Steps are clamped to [-hex_margin, 1 + hex_margin] and halved until the distance decreases;
-/// stops where no step decreases it.
+/// Finds the local coordinates u of position `target` from the given u, whose steps are clamped to
+/// [-hex_margin, 1 + hex_margin].
 TETWARP_HD_RARE void invert_hex(const HexTerms& hex, const double* target, double* u) {
-  constexpr int max_halvings = 6;
-  const auto distance = [](const double* left) {
-    return max_of(fabs(left[0]), max_of(fabs(left[1]), fabs(left[2])));
-  };
-  double x[3], left[3];
   Matrix3 gradient;
-  map_hex(hex, u, x, gradient);
-  for (int axis = 0; axis < 3; ++axis) left[axis] = target[axis] - x[axis];
-  double far = distance(left);
-  for (int step = 0; step < max_hex_steps && far > hex_tolerance; ++step) {
-    double full[3];
-    if (!hex_step(gradient, left, full)) return;
-    const double before = far;
-    double share = 1;
-    for (int halving = 0; halving <= max_halvings && far >= before; ++halving, share *= 0.5) {
-      double tried[3], tried_left[3];
-      Matrix3 tried_gradient;
-      for (int axis = 0; axis < 3; ++axis) {
-        tried[axis] = min_of(max_of(u[axis] + share * full[axis], -hex_margin), 1 + hex_margin);
-      }
-      map_hex(hex, tried, x, tried_gradient);
-      for (int axis = 0; axis < 3; ++axis) tried_left[axis] = target[axis] - x[axis];
-      if (!(distance(tried_left) < before)) continue;
-      far = distance(tried_left);
-      gradient = tried_gradient;
-      for (int axis = 0; axis < 3; ++axis) {
-        u[axis] = tried[axis];
-        left[axis] = tried_left[axis];
-      }
-    }
-    if (far >= before) return;
-  }
+  invert_map([&hex](const double* v, double* x, Matrix3& at) { map_hex(hex, v, x, at); },
+             [](double v) { return min_of(max_of(v, -hex_margin), 1 + hex_margin); }, target, u,
+             gradient);
 }
 
 /// The deformed and the rest shape of a hexahedron.

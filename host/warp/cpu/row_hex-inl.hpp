@@ -85,7 +85,7 @@ struct HexPlaces {
   }
 };
 
-/// hex_step() of a vector of voxels. @returns where the map is not singular
+/// newton_step() of a vector of voxels. @returns where the map is not singular
 HWY_INLINE hn::Mask<HexTag> hex_steps(const HexPlaces& at,
                                       const HexNumbers* left,
                                       HexNumbers* step) {
@@ -131,8 +131,8 @@ HWY_INLINE hn::Mask<HexTag> invert_hexes(const HexTerms& hex,
   HexPlaces at(hex, u);
   auto far = distance(at, left);
   auto good = wanted;
-  for (int step = 0; step < max_hex_steps; ++step) {
-    const auto open = hn::And(good, hn::Gt(far, hn::Set(d, hex_tolerance)));
+  for (int step = 0; step < max_map_steps; ++step) {
+    const auto open = hn::And(good, hn::Gt(far, hn::Set(d, map_tolerance)));
     if (hn::AllFalse(d, open)) return good;
     HexNumbers full[3], tried[3];
     const auto is_regular = hex_steps(at, left, full);
