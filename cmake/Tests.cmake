@@ -135,6 +135,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/make/test_render_volume.cpp
     tests/warp/test_backend_choice.cpp
     tests/warp/test_convex_part.cpp
+    tests/warp/test_curve_map.cpp
     tests/warp/test_face_neighbors.cpp
     tests/warp/test_facet_parts.cpp
     tests/warp/test_source_shares.cpp
