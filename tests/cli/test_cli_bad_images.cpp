@@ -19,7 +19,7 @@
 namespace tetwarp::test {
 namespace {
 using Names = std::vector<std::string>;
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
 /// The header of a 4 x 3 x 2 float32 image, changed.
@@ -49,7 +49,7 @@ TEST(BadImages, HeadersThatContradictThemselves) {
       {[](auto& h) { h.dim[3] = 3; }, "is too small: truncated or damaged, copy it again"},
       {[](auto& h) { h.dim[5] = 12; }, "dim[5]: is 12 components, expected 1 to 9"},
       {[](auto& h) { h.dim[0] = 6, h.dim[6] = 2; }, "dim[6]: is 2, expected 1: only volumes"},
-      {[](auto& h) { h.pixdim[2] = not_a_number; }, "pixdim[2]: is nan, expected the size of a"},
+      {[](auto& h) { h.pixdim[2] = no_number; }, "pixdim[2]: is nan, expected the size of a"},
       {[](auto& h) { h.pixdim[1] = infinite; }, "pixdim[1]: is inf, expected the size of a voxel"},
       {[](auto& h) { h.pixdim[3] = -2; }, "pixdim[3]: is -2.000000, expected the size of a voxel"},
       {[&](auto& h) {
@@ -61,16 +61,16 @@ TEST(BadImages, HeadersThatContradictThemselves) {
        },
        "bad.nii: sform: grid: "},
       {[&](auto& h) {
-         set_sform(h, {1, not_a_number, 1});
+         set_sform(h, {1, no_number, 1});
        },
        "sform: holds a number that is not"},
       {[](auto& h) { h.qform_code = 1, h.qoffset_x = infinite; }, "qform: holds a number that is"},
-      {[](auto& h) { h.qform_code = 1, h.quatern_c = not_a_number; }, "qform: holds a number"},
+      {[](auto& h) { h.qform_code = 1, h.quatern_c = no_number; }, "qform: holds a number"},
       {[](auto& h) { h.datatype = DT_RGB24; }, "bitpix: is 32, but colors have 24"},
       {[](auto& h) { h.datatype = DT_COMPLEX64; }, "datatype: is 32 (COMPLEX64), expected"},
       {[](auto& h) { h.datatype = 0; }, "datatype: is 0 (UNKNOWN), expected integers or floats"},
       {[](auto& h) { h.bitpix = 16; }, "bitpix: is 16, but samples of datatype 16 (float32)"},
-      {[](auto& h) { h.vox_offset = not_a_number; }, "vox_offset: is nan, expected at least 352"},
+      {[](auto& h) { h.vox_offset = no_number; }, "vox_offset: is nan, expected at least 352"},
       {[](auto& h) { h.vox_offset = 1e9F; }, "from byte 1000000000.000000 on, but the file"},
       {[](auto& h) { h.scl_slope = 2, h.scl_inter = infinite; },
        "scl_inter: is inf, expected a fi"},
@@ -95,7 +95,7 @@ TEST(BadImages, HeadersThatContradictThemselves) {
       {[&](auto& h) { set_series(h, 6), h.intent_code = NIFTI_INTENT_SYMMATRIX; },
        "but dim[5] is 1 and dim[4] is 6; move the components to dim[5]"},
       {[&](auto& h) { set_series(h, 2); }, "is too small: truncated or damaged, copy it again"},
-      {[&](auto& h) { set_series(h, 2), h.dim[3] = 1, h.pixdim[4] = not_a_number; },
+      {[&](auto& h) { set_series(h, 2), h.dim[3] = 1, h.pixdim[4] = no_number; },
        "pixdim[4]: gives no times to the 2 steps; correct the header"},
       {[&](auto& h) { set_series(h, 2), h.dim[3] = 1, h.toffset = infinite; },
        "toffset: gives no times to the 2 steps; correct the header"}};
