@@ -94,7 +94,7 @@ class CoupledControl {
     if (error.total <= options_.tolerance * scale) {
       const double more = excess();
       if (more <= 1) return Next::converges;
-      if (!std::isfinite(more)) return Next::fails;
+      if (!std::isfinite(more) || error.total == 0) return Next::fails;  // nothing left to shrink
       options_.tolerance = 0.9 * residual_ / more;
     }
     note_growth(error.total);
