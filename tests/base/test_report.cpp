@@ -2,6 +2,7 @@
 /// The report as JSON, whose field names are stable.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -16,6 +17,7 @@
 namespace tetwarp::test {
 namespace {
 using Json = nlohmann::json;
+using Names = std::set<std::string>;
 
 Report report_of_two_steps() {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
@@ -29,42 +31,44 @@ Report report_of_two_steps() {
   return warper.report();
 }
 
+// In the order of the members.
+constexpr std::array time_names = {"read",   "upload", "setup",    "mask",  "cull",
+                                   "raster", "fields", "download", "write", "total"};
+constexpr std::array count_names = {"voxels",
+                                    "covered",
+                                    "outside",
+                                    "tetrahedra",
+                                    "inverted",
+                                    "flat",
+                                    "folded",
+                                    "cells",
+                                    "candidate_pairs",
+                                    "pairs_rejected",
+                                    "pairs_accepted",
+                                    "pairs_partial",
+                                    "inside_tests",
+                                    "exact_tests",
+                                    "steps_unchanged",
+                                    "tets_unchanged",
+                                    "cells_unchanged",
+                                    "cells_constant",
+                                    "voxels_copied",
+                                    "voxels_straightened",
+                                    "chunks_background",
+                                    "tets_averaged",
+                                    "values_clipped",
+                                    "blocks",
+                                    "bytes_read",
+                                    "bytes_written"};
+
 TEST(Report, HasTheseFieldsAndNoOthers) {
   const Json json = Json::parse(to_json(report_of_two_steps()));
 
-  EXPECT_EQ(names_of(json),
-            (std::set<std::string>{"version", "backend", "backend_reason", "device", "threads",
+  EXPECT_EQ(names_of(json), (Names{"version", "backend", "backend_reason", "device", "threads",
                                    "position_quantum", "timings", "counts", "steps"}));
-  EXPECT_EQ(names_of(json["timings"]),
-            (std::set<std::string>{"read", "upload", "setup", "mask", "cull", "raster", "fields",
-                                   "download", "write", "total"}));
-  EXPECT_EQ(names_of(json["counts"]), (std::set<std::string>{"voxels",
-                                                             "covered",
-                                                             "outside",
-                                                             "tetrahedra",
-                                                             "inverted",
-                                                             "flat",
-                                                             "folded",
-                                                             "cells",
-                                                             "candidate_pairs",
-                                                             "pairs_rejected",
-                                                             "pairs_accepted",
-                                                             "pairs_partial",
-                                                             "inside_tests",
-                                                             "exact_tests",
-                                                             "steps_unchanged",
-                                                             "tets_unchanged",
-                                                             "cells_unchanged",
-                                                             "cells_constant",
-                                                             "voxels_copied",
-                                                             "voxels_straightened",
-                                                             "chunks_background",
-                                                             "tets_averaged",
-                                                             "values_clipped",
-                                                             "blocks",
-                                                             "bytes_read",
-                                                             "bytes_written"}));
-  EXPECT_EQ(names_of(json["steps"][0]), (std::set<std::string>{"step", "timings", "counts"}));
+  EXPECT_EQ(names_of(json["timings"]), Names(time_names.begin(), time_names.end()));
+  EXPECT_EQ(names_of(json["counts"]), Names(count_names.begin(), count_names.end()));
+  EXPECT_EQ(names_of(json["steps"][0]), (Names{"step", "timings", "counts"}));
   EXPECT_EQ(names_of(json["steps"][0]["counts"]), names_of(json["counts"]));
   EXPECT_EQ(names_of(json["steps"][0]["timings"]), names_of(json["timings"]));
 }
@@ -111,37 +115,11 @@ TEST(Report, MixesUpNoField) {
   const Json json = Json::parse(to_json(report));
 
   int value = 0;
-  for (const char* name : {"voxels",
-                           "covered",
-                           "outside",
-                           "tetrahedra",
-                           "inverted",
-                           "flat",
-                           "folded",
-                           "cells",
-                           "candidate_pairs",
-                           "pairs_rejected",
-                           "pairs_accepted",
-                           "pairs_partial",
-                           "inside_tests",
-                           "exact_tests",
-                           "steps_unchanged",
-                           "tets_unchanged",
-                           "cells_unchanged",
-                           "cells_constant",
-                           "voxels_copied",
-                           "voxels_straightened",
-                           "chunks_background",
-                           "tets_averaged",
-                           "values_clipped",
-                           "blocks",
-                           "bytes_read",
-                           "bytes_written"}) {
+  for (const char* name : count_names) {
     EXPECT_EQ(json["counts"][name], value += 2) << name;
   }
   value = 0;
-  for (const char* name : {"read", "upload", "setup", "mask", "cull", "raster", "fields",
-                           "download", "write", "total"}) {
+  for (const char* name : time_names) {
     EXPECT_EQ(json["timings"][name], value += 2) << name;
   }
   EXPECT_EQ(json["backend"], "reference");
