@@ -111,7 +111,8 @@ double least_block_memory(BlockPlanner& planner,
 }
 
 std::string needs_all_at_once(const WarpArguments& arguments, bool has_curves) {
-  if (has_curves) return "tetrahedra of ten nodes need the whole source; split them by --ten-nodes split";
+  if (has_curves)
+    return "tetrahedra of ten nodes need the whole source; split them by --ten-nodes split";
   if (arguments.extra.contains(forward_output)) {
     return "the forward displacement needs the whole mesh; leave out --outputs forward";
   }
