@@ -101,8 +101,8 @@ class FslNumbers {
     return numbers;
   }
 
-  /// Calls take(voxel of the region, number). Regions must be as NiftiSamples::read_in_order()
-  /// wants them.
+  /// Calls take(voxel of the region, number).
+  /// @pre regions follow each other as NiftiSamples::read_in_order() requires
   template <class Take>
   void read_in_order(std::size_t axis, const Region& region, const Take& take) {
     visit(axis, region, &NiftiSamples::read_in_order, take);

@@ -107,8 +107,8 @@ TEST(CoupledIteration, GoesOnWhereACloserMeasureIsBeyondTheTolerance) {
   EXPECT_EQ(outcome.outer_iterations, 26);
 }
 
-/// A closer measure that is always a little beyond the tolerance asks for ever smaller errors: the
-/// iteration ends where rounding stops it, not with a residual of nothing.
+/// The iteration fails where a closer measure has no answer, and where it is beyond the tolerance
+/// even when rounding has made the error zero.
 TEST(CoupledIteration, FailsWhereACloserMeasureHasNoAnswerOrIsNeverMet) {
   OneEquation lost(0.25);
   lost.first_excess = std::numeric_limits<double>::infinity();
@@ -127,7 +127,7 @@ TEST(CoupledIteration, FailsWhereACloserMeasureHasNoAnswerOrIsNeverMet) {
   }
 }
 
-/// A caller who ends the closer measure ends the solve.
+/// Where the caller cancels the closer measure, the solve is stopped.
 TEST(CoupledIteration, IsStoppedWhereTheCallerEndsACloserMeasure) {
   OneEquation problem(0.25);
   problem.first_excess = std::numeric_limits<double>::infinity();

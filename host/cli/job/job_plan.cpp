@@ -262,7 +262,7 @@ void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
   check_output_files(files_to_write(arguments, plan.outputs()), inputs_of(arguments));
 }
 
-/// Throws IoError when options ask for what curved maps of the mesh do not give.
+/// Throws IoError about options that need affine maps, where the mesh has tetrahedra of ten nodes.
 void check_curves(const MeshReader& mesh, const WarpArguments& arguments) {
   if (mesh.mid_nodes().empty()) return;
   WarpOptions warp = arguments.warp;

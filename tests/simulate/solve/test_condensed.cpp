@@ -91,7 +91,8 @@ TEST(BlockJacobian, ProductsAreThoseOfTheMatrix) {
   const Eigen::VectorXd w = numbers(j.rows(), 1);
   Eigen::VectorXd u(j.rows()), force = numbers(j.cols(), 2);
   const Eigen::VectorXd pushed = force + j.transpose() * r;
-  s.jacobian.velocities(v.data(), {w.data(), w.data() + w.size()}, 1, u.data());
+  s.jacobian.velocities({v.data(), v.size()}, {w.data(), w.data() + w.size()}, 1,
+                        {u.data(), u.size()});
   s.jacobian.add_pushes(r.data(), force.data());
   EXPECT_LE((u - w - j * v).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_LE((force - pushed).cwiseAbs().maxCoeff(), 1e-13);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/simulate/solve/problem/contact_laws.hpp"
 #include "host/simulate/step/cpu/island_factors.hpp"
 
@@ -92,8 +94,8 @@ void CondensedSolver::set_problem(const ContactProblem& laws, const ContactShare
   gather_laws(share.contacts, laws, problem_);
   laws_.set(problem_);
   problem_.free_velocity.resize(problem_.velocity_offset.size());
-  jacobian_.velocities(velocity_.data(), problem_.velocity_offset, 1,
-                       problem_.free_velocity.data());
+  jacobian_.velocities(view_of(std::as_const(velocity_)), problem_.velocity_offset, 1,
+                       view_of(problem_.free_velocity));
   matrix_.subtract(laws_.preload, problem_.free_velocity);
   problem_.velocity_offset.clear();
   matrix_.copy(problem_.delassus);

@@ -35,12 +35,11 @@ TouchingRows BlockJacobian::rows(const std::vector<double>& offset) const {
   return rows;
 }
 
-void BlockJacobian::velocities(const double* v,
+void BlockJacobian::velocities(View<const double> v,
                                const std::vector<double>& offset,
                                int threads,
-                               double* velocity) const {
-  const TouchVelocityOp op{rows(offset), {v, 0}, {velocity, 3 * count()}};
-  parallel_for(threads, count(), op);
+                               View<double> velocity) const {
+  parallel_for(threads, count(), TouchVelocityOp{rows(offset), v, velocity});
 }
 
 void BlockJacobian::add_push(std::size_t contact, const double* r, double* force) const {

@@ -34,11 +34,13 @@ class BlockJacobian {
   /// @param offset  w, [3 contacts]
   TouchingRows rows(const std::vector<double>& offset) const;
 
-  /// u = J v + w. @param velocity  u, [3 contacts]
-  void velocities(const double* v,
+  /// u = J v + w.
+  /// @param v         [rows][3]
+  /// @param velocity  out: u, [3 contacts]
+  void velocities(View<const double> v,
                   const std::vector<double>& offset,
                   int threads,
-                  double* velocity) const;
+                  View<double> velocity) const;
   /// force += J^T r of one contact.
   void add_push(std::size_t contact, const double* r, double* force) const;
   /// force += J^T r.

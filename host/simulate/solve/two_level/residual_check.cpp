@@ -79,7 +79,7 @@ double ResidualCheck::run(const std::vector<double>& x,
     return std::numeric_limits<double>::infinity();
   }
   velocity_.resize(impulse.size());
-  blocks_.velocities_of_rows(solution_.data(), velocity_.data());
+  blocks_.velocities_of_rows(solution_, velocity_);
   const CheckedContacts contacts{view_of(impulse), view_of(velocity), view_of(*free_),
                                  view_of(zeros_)};
   const auto sums =

@@ -6,6 +6,7 @@
 
 #include <tetwarp/contact_problem.hpp>
 
+#include "host/base/vector_view.hpp"
 #include "host/simulate/solve/problem/block_jacobian.hpp"
 #include "host/simulate/solve/problem/contact_constants.hpp"
 #include "host/simulate/solve/two_level/elastic_space.hpp"
@@ -81,9 +82,11 @@ class TouchingBlocks {
             const double* before,
             const double* after,
             double* y) const;
-  /// u = J x + w of all contacts. @param velocity  out [3 contacts]
-  void velocities_of_rows(const double* x, double* velocity) const {
-    jacobian_.velocities(x, offset_, threads(), velocity);
+  /// u = J x + w of all contacts.
+  /// @param x         [rows][3]
+  /// @param velocity  out: u, [3 contacts]
+  void velocities_of_rows(const std::vector<double>& x, std::vector<double>& velocity) const {
+    jacobian_.velocities(view_of(x), offset_, threads(), view_of(velocity));
   }
   /// force = load + J^T r in the rows that contacts touch. @param load  of the system
   void add_impulses(View<const double> load, const double* impulse, double* force) const;

@@ -53,7 +53,7 @@ void TouchingNewton::find_direction(const std::vector<double>& defect,
   trial_impulse_ = x;
   for (std::size_t i = 0; i < x.size(); ++i) trial_impulse_[i] += change_[i];
   velocity_change_.resize(numbers);
-  blocks_.velocities_of_rows(trial_impulse_.data(), velocity_change_.data());
+  blocks_.velocities_of_rows(trial_impulse_, velocity_change_);
   impulse_change_ = offset_;
   for (std::size_t i = 0; i < numbers; ++i) velocity_change_[i] -= velocity[i];
   for (std::size_t c = 0; c < numbers / 3; ++c) {

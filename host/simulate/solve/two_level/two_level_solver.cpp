@@ -64,7 +64,7 @@ void TwoLevelSolver::prepare(double damping) {
   impulse_ = given_.impulse;
   contact_velocity_.resize(impulse_.size());
   free_.resize(impulse_.size());
-  blocks_.velocities_of_rows(x_.data(), free_.data());
+  blocks_.velocities_of_rows(x_, free_);
   check_.set(lists(), free_);
   product_operations_ = 0;
   for (const std::int32_t row : lists().system_row) {
@@ -111,7 +111,7 @@ CoupledControl TwoLevelSolver::control(bool ends_early, double tolerance) {
 std::optional<CoupledError> TwoLevelSolver::find_error(const CoupledOutcome&) {
   blocks_.add_impulses(system_->load, impulse_.data(), force_.data());
   const double defect = step_.run(x_, force_, y_);
-  blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
+  blocks_.velocities_of_rows(x_, contact_velocity_);
   const TouchingSums sums =
       blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data(), working_);
   work_ = sums.work;
@@ -246,7 +246,7 @@ CoupledOutcome TwoLevelSolver::solve(const StepSystem& system,
     outcome.residual =
         std::isfinite(checked_) ? std::max(best_.residual, checked_) : best_.residual;
     take_best();
-    blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
+    blocks_.velocities_of_rows(x_, contact_velocity_);
   } else if (checked_ > 0) {
     outcome.residual = checked_;
   }
