@@ -52,7 +52,8 @@ TETWARP_EXPORT MappedPoints map_points(const Mesh& mesh,
                                        const MapPointsOptions& options = {});
 
 /// By the curved maps of tetrahedra of ten nodes, see CurvedMesh; its voxels are those of
-/// MapPointsOptions::grid.
+/// MapPointsOptions::grid. Shapes, units and errors as above.
+/// @throws std::invalid_argument  also what check_mid_nodes() throws
 TETWARP_EXPORT MappedPoints map_points(const CurvedMesh& mesh,
                                        const std::vector<Point3>& deformed,
                                        std::vector<Point3> points,

@@ -221,6 +221,7 @@ class TETWARP_EXPORT Warper {
   /// By the curved maps of tetrahedra of ten nodes, see CurvedMesh. For values as they are: no
   /// antialias, densities, vectors and tensors, label rules but linear, source window and forward
   /// field; for these pass split_curved(mesh).
+  /// @throws std::invalid_argument  also about these, and what check_mid_nodes() throws
   Warper(std::span<const VolumeView> sources,
          const CurvedMesh& mesh,
          const WarpOptions& options = {});
