@@ -48,8 +48,8 @@ inline bool is_curved(const CurvedMesh& mesh, std::size_t tet) {
   return tet < mesh.mid_nodes.size() && mesh.mid_nodes[tet] != no_mid_nodes;
 }
 
-/// The eight tetrahedra between the ten nodes of one, with its orientation: four at its corners, and
-/// four around the line between the middles of two opposite edges.
+/// The eight tetrahedra between the ten nodes of one, with its orientation: four at its corners,
+/// and four around the line between the middles of two opposite edges.
 TETWARP_EXPORT std::array<std::array<std::int32_t, 4>, 8> parts_of_curved(
     const std::array<std::int32_t, 4>& corners, const MidNodes& mid_nodes);
 
