@@ -23,7 +23,8 @@ tetwarp_sources(tetwarp host/contact/block_jacobi
 tetwarp_sources(tetwarp host/contact/cuda
   contact_${tetwarp_cuda})
 tetwarp_sources(tetwarp host/contact/newton
-  associated.cpp contact_assembly.cpp natural_map.cpp newton.cpp newton_system.cpp pivoting.cpp)
+  associated.cpp augmented_lagrangian.cpp contact_assembly.cpp dense_bodies.cpp natural_map.cpp
+  newton.cpp newton_system.cpp pivoting.cpp)
 tetwarp_sources(tetwarp host/contact/problem
   budget.cpp checks.cpp delassus.cpp imbalance.cpp matrix.cpp measure.cpp problem.cpp residual.cpp
   row_blocks.cpp row_checks.cpp spring_offset.cpp)

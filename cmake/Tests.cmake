@@ -222,7 +222,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_sweep.cpp
     tests/contact/test_contact_analysis.cpp tests/contact/test_contact_bilateral.cpp
     tests/contact/test_contact_ellipse.cpp tests/contact/test_contact_rolling.cpp
-    tests/contact/test_coupled_iteration.cpp)
+    tests/contact/test_coupled_iteration.cpp tests/contact/test_contact_multipliers.cpp)
   tetwarp_discover(tetwarp_contact_tests unit)
 
   # A separate program, because the emulation defines CUDA's names.

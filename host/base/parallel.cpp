@@ -152,8 +152,8 @@ int thread_count(int requested) {
     throw std::invalid_argument("threads: " + std::to_string(requested) +
                                 ", expected 0 (all cores) to " + std::to_string(max_threads));
   }
-  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  return requested > 0 ? requested : std::clamp(cores, 1, max_threads);
+  if (requested > 0) return requested;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, max_threads);
 }
 
 void run_parallel_tasks(int threads,

@@ -45,6 +45,7 @@ void count_outcomes(const std::vector<IslandOutcome>& outcomes, ContactReport& r
   for (const IslandOutcome& outcome : outcomes) {
     report.sweeps = std::max(report.sweeps, outcome.sweeps);
     report.outer_iterations = std::max(report.outer_iterations, outcome.outer_iterations);
+    report.multiplier_steps += outcome.multiplier_steps;
     report.newton_iterations += outcome.newton_iterations;
     report.contact_updates += outcome.contact_updates;
     for (const char* method : outcome.methods) {

@@ -22,6 +22,7 @@ std::string to_json(const ContactReport& report) {
                                        {"islands", report.islands},
                                        {"outer_iterations", report.outer_iterations},
                                        {"sweeps", report.sweeps},
+                                       {"multiplier_steps", report.multiplier_steps},
                                        {"newton_iterations", report.newton_iterations},
                                        {"contact_updates", report.contact_updates},
                                        {"residual", residual.eta},

@@ -177,6 +177,7 @@ struct ContactReport {
   std::int64_t islands = 0;  ///< connected components of bodies that have contacts
   std::int64_t outer_iterations = 0;  ///< of the coupled island that took the most
   std::int64_t sweeps = 0;            ///< of the island that took the most
+  std::int64_t multiplier_steps = 0;  ///< Newton steps of the method of multipliers, in all
   std::int64_t newton_iterations = 0;
   std::int64_t contact_updates = 0;      ///< solves of a single contact, in all
   std::vector<double> residual_history;  ///< `measure` each time it was evaluated

@@ -26,11 +26,11 @@ ContactReport counting_report() {
   report.threads = static_cast<int>(next++);
   for (std::int64_t ContactReport::*count :
        {&ContactReport::contacts, &ContactReport::colors, &ContactReport::islands,
-        &ContactReport::outer_iterations, &ContactReport::sweeps, &ContactReport::newton_iterations,
-        &ContactReport::contact_updates, &ContactReport::rows_skipped,
-        &ContactReport::springs_skipped, &ContactReport::bodies_skipped,
-        &ContactReport::islands_stopped, &ContactReport::updates_skipped,
-        &ContactReport::condensations_kept}) {
+        &ContactReport::outer_iterations, &ContactReport::sweeps, &ContactReport::multiplier_steps,
+        &ContactReport::newton_iterations, &ContactReport::contact_updates,
+        &ContactReport::rows_skipped, &ContactReport::springs_skipped,
+        &ContactReport::bodies_skipped, &ContactReport::islands_stopped,
+        &ContactReport::updates_skipped, &ContactReport::condensations_kept}) {
     report.*count = next++;
   }
   report.residual = {0.5, 0.25, 0.125, 7, 0.0625, 0.03125};
@@ -45,21 +45,37 @@ ContactReport counting_report() {
 TEST(ContactReport, HasExactlyTheNamesOfTheInterface) {
   const Json json = Json::parse(to_json(counting_report()));
 
-  EXPECT_EQ(names_of(json), (std::set<std::string>{"version",          "backend",
-                                                   "device",           "threads",
-                                                   "method",           "converged",
-                                                   "status",           "status_reason",
-                                                   "contacts",         "bilateral_rows",
-                                                   "rolling_contacts", "colors",
-                                                   "islands",          "outer_iterations",
-                                                   "sweeps",           "newton_iterations",
-                                                   "contact_updates",  "residual",
-                                                   "fclib_error",      "largest_contact_residual",
-                                                   "largest_contact",  "penetration",
-                                                   "balance",          "residual_history",
-                                                   "rows_skipped",     "springs_skipped",
-                                                   "bodies_skipped",   "islands_stopped",
-                                                   "updates_skipped",  "condensations_kept",
+  EXPECT_EQ(names_of(json), (std::set<std::string>{"version",
+                                                   "backend",
+                                                   "device",
+                                                   "threads",
+                                                   "method",
+                                                   "converged",
+                                                   "status",
+                                                   "status_reason",
+                                                   "contacts",
+                                                   "bilateral_rows",
+                                                   "rolling_contacts",
+                                                   "colors",
+                                                   "islands",
+                                                   "outer_iterations",
+                                                   "sweeps",
+                                                   "multiplier_steps",
+                                                   "newton_iterations",
+                                                   "contact_updates",
+                                                   "residual",
+                                                   "fclib_error",
+                                                   "largest_contact_residual",
+                                                   "largest_contact",
+                                                   "penetration",
+                                                   "balance",
+                                                   "residual_history",
+                                                   "rows_skipped",
+                                                   "springs_skipped",
+                                                   "bodies_skipped",
+                                                   "islands_stopped",
+                                                   "updates_skipped",
+                                                   "condensations_kept",
                                                    "timings"}));
   EXPECT_EQ(names_of(json["timings"]), (std::set<std::string>{"setup", "solve", "total"}));
 }
@@ -69,10 +85,10 @@ TEST(ContactReport, MixesUpNoField) {
   const Json json = Json::parse(to_json(counting_report()));
 
   std::int64_t value = 1;
-  for (const char* name :
-       {"threads", "contacts", "colors", "islands", "outer_iterations", "sweeps",
-        "newton_iterations", "contact_updates", "rows_skipped", "springs_skipped", "bodies_skipped",
-        "islands_stopped", "updates_skipped", "condensations_kept"}) {
+  for (const char* name : {"threads", "contacts", "colors", "islands", "outer_iterations", "sweeps",
+                           "multiplier_steps", "newton_iterations", "contact_updates",
+                           "rows_skipped", "springs_skipped", "bodies_skipped", "islands_stopped",
+                           "updates_skipped", "condensations_kept"}) {
     EXPECT_EQ(json[name], value++) << name;
   }
   double residual = 1;

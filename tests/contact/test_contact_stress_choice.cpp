@@ -11,6 +11,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/newton/augmented_lagrangian.hpp"
 #include "host/contact/newton/newton_system.hpp"
 #include "host/contact/solve/method_choice.hpp"
 #include "tests/support/contact_methods.hpp"
@@ -56,6 +57,10 @@ double work_of(const ContactProblem& problem, const ContactOptions& options, dou
   double work = static_cast<double>(report.sweeps);
   if (report.newton_iterations > 0) {
     work += static_cast<double>(report.newton_iterations) * newton_step;
+  }
+  if (report.multiplier_steps > 0) {
+    work += static_cast<double>(report.multiplier_steps) *
+            sweeps_per_multiplier_step(problem.dof_count(), problem.contact_count());
   }
   return work;
 }

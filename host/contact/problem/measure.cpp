@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "host/contact/problem/friction_cone.hpp"
 #include "host/contact/problem/input.hpp"
 
 namespace tetwarp {
@@ -45,17 +46,6 @@ Vector3d row_error(const MeasuredContact& block,
   const double length = target.tail<2>().norm();
   if (length > radius) target.tail<2>() *= radius / length;
   return impulse - target;
-}
-
-/// The point of { |x_t| <= mu x_n } nearest to x.
-Vector3d project_on_cone(const Vector3d& x, double friction) {
-  const double tangent = x.tail<2>().norm();
-  // The polar cone first: without friction the cone is a ray, and x of an open contact is outside.
-  if (friction * tangent <= -x(0)) return Vector3d::Zero();
-  if (tangent <= friction * x(0)) return x;
-  const double normal = (friction * tangent + x(0)) / (1 + friction * friction);
-  const double shrink = friction * normal / tangent;
-  return {normal, shrink * x(1), shrink * x(2)};
 }
 }  // namespace
 

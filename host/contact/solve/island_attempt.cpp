@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "host/contact/newton/augmented_lagrangian.hpp"
 #include "host/contact/newton/newton_system.hpp"
 #include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/solve/method_choice.hpp"
@@ -19,23 +20,42 @@ const ContactProblem& IslandAttempt::part() {
   return *part_;
 }
 
-void IslandAttempt::polish(const NewtonLimits& limits) {
-  if (has_rolling(part())) return;
+/// Replaces the current impulses by those of a method, unless their error is larger.
+/// @param steps   the count of its factorizations
+/// @param method  (options, impulses in and out) -> NewtonResult
+template <class Method>
+void IslandAttempt::improve(const char* name, std::int64_t& steps, const Method& method) {
   ContactOptions options = all_.options;
   options.tolerance /= 2;  // relative to this island, not to the whole problem
   double* const current = impulse();
-  std::vector<double> polished(current, current + size()), body_velocity;
-  const std::vector<double> swept = polished;
-  const NewtonResult newton =
-      newton_polish(part(), options, polished, body_velocity, all_.budget, limits);
-  outcome_.newton_iterations += newton.iterations;
-  if (newton.iterations > 0) outcome_.methods.push_back(report_name_of(ContactMethod::newton));
+  std::vector<double> improved(current, current + size());
+  const std::vector<double> swept = improved;
+  const NewtonResult newton = method(options, improved);
+  steps += newton.iterations;
+  if (newton.iterations > 0) outcome_.methods.push_back(name);
   const double before = excess();
-  std::copy(polished.begin(), polished.end(), current);
+  std::ranges::copy(improved, current);
   measure();
   if (!(excess() > before)) return;
-  std::copy(swept.begin(), swept.end(), current);
+  std::ranges::copy(swept, current);
   measure();
+}
+
+void IslandAttempt::polish(const NewtonLimits& limits) {
+  if (has_rolling(part())) return;
+  improve(report_name_of(ContactMethod::newton), outcome_.newton_iterations,
+          [&](const ContactOptions& options, std::vector<double>& impulse) {
+            std::vector<double> body_velocity;
+            return newton_polish(part(), options, impulse, body_velocity, all_.budget, limits);
+          });
+}
+
+void IslandAttempt::multiply() {
+  improve("multipliers", outcome_.multiplier_steps,
+          [&](const ContactOptions& options, std::vector<double>& impulse) {
+            return solve_by_multipliers(part(), options, run_.criteria()[index_of(index_)], impulse,
+                                        all_.budget);
+          });
 }
 
 double IslandAttempt::sweeps_per_newton_step() {

@@ -32,6 +32,7 @@ class IslandAttempt {
                 IslandOutcome& outcome)
       : all_(all), index_(island), run_(run), outcome_(outcome) {}
 
+  const HostProblem& all() const { return all_; }
   const ContactOptions& options() const { return all_.options; }
   const ContactStructure& structure() const { return all_.structure; }
   const ContactProblem& problem() const { return all_.problem; }
@@ -57,10 +58,15 @@ class IslandAttempt {
   /// Newton's method from the current impulses; keeps its impulses unless their error is larger.
   /// Does nothing where there is rolling friction, which it does not have.
   void polish(const NewtonLimits& limits);
+  /// The method of multipliers from the current impulses, as polish().
+  void multiply();
   /// Sweeps that take as long as a step of Newton's method; infinity where it is not used.
   double sweeps_per_newton_step();
 
  private:
+  template <class Method>
+  void improve(const char* name, std::int64_t& steps, const Method& method);
+
   HostProblem all_;
   std::int64_t index_;
   ContactRun<double>& run_;

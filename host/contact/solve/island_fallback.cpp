@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "host/contact/newton/augmented_lagrangian.hpp"
 #include "host/contact/newton/newton.hpp"
 #include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/solve/best_impulses.hpp"
@@ -16,6 +17,8 @@ namespace tetwarp {
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t search_sweeps = 4096;  ///< of a search for contradictions, at most
+/// Sweeps before the choice of a method: where the method of multipliers can follow, and elsewhere.
+constexpr std::int64_t short_sweeps = 24, usual_sweeps = 64;
 /// A series of Newton steps between sweeps.
 struct NewtonTrial {
   double expected;  ///< steps by which sweeps count its cost
@@ -24,6 +27,8 @@ struct NewtonTrial {
 constexpr NewtonTrial newton_trials[] = {
     {12, {.shared = 160, .total = 40, .phases = NewtonPhases::near}},
     {60, {.shared = 60, .total = 40, .phases = NewtonPhases::far}}};
+/// Factorizations that the method of multipliers usually takes.
+constexpr double multiplier_steps = 12;
 /// Sweeps that the first trial takes as long as at least. As long as more sweeps promise to be
 /// cheaper, neither contradictions nor the cost of a factorization are looked for.
 constexpr double least_trial = 240;
@@ -63,6 +68,35 @@ bool IslandFallback::has_other_blocks() const {
   return false;
 }
 
+bool IslandFallback::takes_multipliers(const HostProblem& all, std::int64_t i) {
+  const ContactIsland& island = all.structure.islands[index_of(i)];
+  return all.options.method == ContactMethod::automatic && !island.is_coupled &&
+         tetwarp::takes_multipliers(all.problem, all.options, island.dof_end - island.dof_begin);
+}
+
+std::int64_t IslandFallback::first_sweeps(const HostProblem& all, std::int64_t i) {
+  return takes_multipliers(all, i) ? short_sweeps : all.options.max_sweeps;
+}
+
+/// Sweeps as long as they promise to be cheaper, then the method of multipliers.
+void IslandFallback::multiply() {
+  const ContactIsland& island = attempt_.island();
+  const std::vector<ContactEvent>& events = attempt_.outcome().events;
+  if (events.size() > 1) {
+    const auto least = std::ranges::min_element(events, {}, &ContactEvent::error);
+    const double first = attempt_.excess() * events.front().error / least->error;
+    left_ = sweeps_left(first, attempt_.excess(), attempt_.outcome().sweeps);
+  }
+  sweeps_ = SweepChoice(ContactMethod::anderson);
+  const std::int64_t dofs = island.dof_end - island.dof_begin;
+  const double step = sweeps_per_multiplier_step(dofs, island.contact_count());
+  sweep_while_cheaper(multiplier_steps * step, short_sweeps);
+  if (attempt_.is_done()) return;
+  const double before = attempt_.excess();
+  attempt_.multiply();
+  if (attempt_.excess() < before / 2) last_.clear();  // sweeps go on from the new impulses
+}
+
 void IslandFallback::run() {
   const std::int64_t most = std::min(attempt_.options().max_sweeps, search_sweeps);
   constexpr std::int64_t few = 64;
@@ -72,7 +106,10 @@ void IslandFallback::run() {
     if (!clamp_contradicting({most, false}) && allows_many) certify_after_sweeps();
     return;
   }
-  if (is_automatic()) sweep_while_cheaper(least_trial);
+  if (is_automatic()) {
+    if (takes_multipliers(attempt_.all(), attempt_.index())) multiply();
+    if (!attempt_.is_done()) sweep_while_cheaper(least_trial, usual_sweeps);
+  }
   if (attempt_.is_done() || clamp_contradicting({std::min(most, few), true})) return;
   is_automatic() ? take_turns() : attempt_.polish({});
   if (attempt_.is_done() || clamp_contradicting({most, false}) || find_contradiction()) return;
@@ -92,7 +129,7 @@ void IslandFallback::certify_after_sweeps() {
 void IslandFallback::take_turns() {
   const double worth = newton_worth(attempt_.sweeps_per_newton_step());
   for (const NewtonTrial& trial : newton_trials) {
-    sweep_while_cheaper(trial.expected * worth);
+    sweep_while_cheaper(trial.expected * worth, usual_sweeps);
     if (attempt_.is_done()) return;
     attempt_.polish(trial.limits);
     if (attempt_.is_done()) return;
@@ -106,7 +143,7 @@ void IslandFallback::finish_automatic() {
     IslandRestart(attempt_).run();
     last_.clear();
   }
-  if (!attempt_.is_done()) sweep_while_cheaper(infinity);
+  if (!attempt_.is_done()) sweep_while_cheaper(infinity, usual_sweeps);
   double before = infinity;
   while (!attempt_.is_done() && attempt_.excess() < before / 2) {
     before = attempt_.excess();
@@ -120,7 +157,8 @@ void IslandFallback::finish_automatic() {
 /// residual that are no solution the residual first grows, and sweeps from the best ones would
 /// return there.
 /// @param newton_sweeps  sweeps that take as long as Newton's method would
-void IslandFallback::sweep_while_cheaper(double newton_sweeps) {
+/// @param least          sweeps between two choices, at least
+void IslandFallback::sweep_while_cheaper(double newton_sweeps, std::int64_t least) {
   const IslandOutcome& outcome = attempt_.outcome();
   ContactRun<double>& run = attempt_.run();
   double* const impulse = attempt_.impulse();
@@ -130,11 +168,11 @@ void IslandFallback::sweep_while_cheaper(double newton_sweeps) {
          !prefers_newton(newton_sweeps, outcome.sweeps, left_)) {
     const double before = best.excess();
     const std::int64_t from = outcome.sweeps;
-    const double least = run.sweep_past_best(
-        attempt_.index(), from + std::max<std::int64_t>(64, from / 2), sweeps_.current());
+    const double swept =
+        run.sweep_past_best(attempt_.index(), from + std::max(least, from / 2), sweeps_.current());
     attempt_.measure();
     if (attempt_.is_done()) return;
-    best.keep(run.best_impulse(attempt_.index()), least);
+    best.keep(run.best_impulse(attempt_.index()), swept);
     const std::int64_t sweeps = outcome.sweeps - from;
     if (sweeps == 0) break;  // numbers are not finite
     left_ = sweeps_left(before, best.excess(), sweeps);

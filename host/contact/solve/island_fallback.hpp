@@ -32,10 +32,14 @@ class IslandFallback {
   IslandFallback(IslandAttempt& attempt, ContradictionMemory& memory, EngineResult& result)
       : attempt_(attempt), memory_(memory), result_(result) {}
 
+  /// Sweeps of an island at first: few where the method of multipliers can follow.
+  static std::int64_t first_sweeps(const HostProblem& all, std::int64_t island);
+
   /// Changes the impulses of the attempt and measures them.
   void run();
 
  private:
+  static bool takes_multipliers(const HostProblem& all, std::int64_t island);
   bool is_automatic() const { return attempt_.options().method == ContactMethod::automatic; }
   bool has_newton() const {
     return is_automatic() || attempt_.options().method == ContactMethod::newton;
@@ -46,7 +50,8 @@ class IslandFallback {
   void certify_after_sweeps();
   void take_turns();
   void finish_automatic();
-  void sweep_while_cheaper(double newton_sweeps);
+  void multiply();
+  void sweep_while_cheaper(double newton_sweeps, std::int64_t least);
   bool clamp_contradicting(const ContradictionSearch& search);
   bool find_contradiction();
   bool find_unbounded();

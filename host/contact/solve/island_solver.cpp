@@ -66,17 +66,18 @@ void IslandSolver::solve_on_host(EngineResult& result) {
   free_motion_ = system.body_free;
   std::vector<double> start = guess();
   ContactRun<double> run(options_, threads_, structure_, system, result.outcomes, budget_);
+  const auto all_sweeps = [this](std::int64_t) { return options_.max_sweeps; };
   if (options_.precision == ContactPrecision::float32) {
     const ContactSystem<float> rounded = make_float32(structure_, system);
     ContactRun<float> coarse(options_, threads_, structure_, rounded, result.outcomes, budget_);
     coarse.start_from({start.begin(), start.end()});
-    coarse.solve();
+    coarse.solve(all_sweeps);
     start.assign(coarse.state().impulse.begin(), coarse.state().impulse.end());
     result.updates_skipped = coarse.updates_skipped();
     run.start_from(start);
   } else {
     run.start_from(start);
-    run.solve();
+    run.solve([this](std::int64_t i) { return IslandFallback::first_sweeps(host_problem(), i); });
     result.updates_skipped = run.updates_skipped();
   }
   for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
@@ -129,7 +130,7 @@ void IslandSolver::finish(std::int64_t i, ContactRun<double>& run, EngineResult&
   outcome.sums = run.measure(i);
   outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
   if (!run.is_done(i, outcome.sums)) {
-    IslandAttempt attempt({options_, structure_, *problem_, budget_}, i, run, outcome);
+    IslandAttempt attempt(host_problem(), i, run, outcome);
     IslandFallback(attempt, contradiction_memory_, result).run();
   }
   to_problem_index(structure_, 0, outcome.sums);

@@ -12,6 +12,7 @@
 #include "host/contact/problem/budget.hpp"
 #include "host/contact/solve/engine_result.hpp"
 #include "host/contact/solve/feasibility.hpp"
+#include "host/contact/solve/island_attempt.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
 #include "host/contact/sweeps/run.hpp"
@@ -66,6 +67,7 @@ class IslandSolver {
   ContactSystem<double>& host_system();
   ContactSavings set_device_problem();
   std::vector<double> guess() const;
+  HostProblem host_problem() const { return {options_, structure_, *problem_, budget_}; }
 
   void solve_on_host(EngineResult& result);
   void solve_on_device(EngineResult& result);

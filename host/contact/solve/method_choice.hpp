@@ -36,6 +36,9 @@ bool prefers_newton(double worth, std::int64_t spent, double left);
 /// Which accelerated sweeps continue an island: conjugate directions or Anderson's method.
 class SweepChoice {
  public:
+  /// @param first  the present sweeps
+  explicit SweepChoice(ContactMethod first = ContactMethod::nonlinear_cg) : current_(first) {}
+
   ContactMethod current() const { return current_; }
 
   /// Chooses the next sweeps: the other ones after the present ones have been slow three times in a
@@ -45,7 +48,7 @@ class SweepChoice {
   void note(std::int64_t spent, double left);
 
  private:
-  ContactMethod current_ = ContactMethod::nonlinear_cg;
+  ContactMethod current_;
   int slow_ = 0;           ///< slow sweeps in a row
   double other_left_ = 0;  ///< of the other ones, when they last ran
 };

@@ -22,6 +22,7 @@ struct IslandOutcome {
   StopReason reason = StopReason::converged;
   std::int64_t sweeps = 0;
   std::int64_t outer_iterations = 0;
+  std::int64_t multiplier_steps = 0;
   std::int64_t newton_iterations = 0;
   std::int64_t contact_updates = 0;
   std::vector<const char*> methods;  ///< names, in the order of use
@@ -110,14 +111,16 @@ class ContactRun {
 
   /// Solves all islands: large ones one after the other by all threads, the others in parallel by
   /// one thread each.
-  void solve() {
+  /// @param most_sweeps  (island) sweeps at most; options.max_sweeps at most
+  template <class MostSweeps>
+  void solve(const MostSweeps& most_sweeps) {
     std::vector<std::int64_t> small;
     std::int64_t contacts = 0, most = 0;  // of small islands: of all, of the largest
     for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
       if (island(i).is_coupled) continue;
       const std::int64_t own = island(i).contact_count();
       if (threads_ > 1 && own >= shared_from) {
-        go_on(i, threads_, options_.method, options_.max_sweeps);
+        go_on(i, threads_, options_.method, std::min(most_sweeps(i), options_.max_sweeps));
       } else {
         small.push_back(i);
         contacts += own;
@@ -126,7 +129,8 @@ class ContactRun {
     }
     const bool is_worth_it = contacts - most >= worth_a_thread;
     parallel_tasks(is_worth_it ? threads_ : 1, std::ssize(small), [&](std::int64_t k) {
-      go_on(small[static_cast<std::size_t>(k)], 1, options_.method, options_.max_sweeps);
+      const std::int64_t i = small[static_cast<std::size_t>(k)];
+      go_on(i, 1, options_.method, std::min(most_sweeps(i), options_.max_sweeps));
     });
   }
 
