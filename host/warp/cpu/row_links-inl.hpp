@@ -157,6 +157,7 @@ class RowLinks {
   }
 
   static unsigned move_at(const TransformLink& link, const EightIndices& index, EightPositions& x) {
+    if (link.field.vectors != nullptr && add_field(link.field, index, x)) return index.inside;
     for (int lane = 0; lane < cell_edge; ++lane) {
       if ((index.inside >> lane & 1) == 0) continue;
       if (link.field.vectors != nullptr) {
@@ -166,6 +167,112 @@ class RowLinks {
       }
     }
     return index.inside;
+  }
+
+  /// Adds the vectors of a field to eight points within it, if along each axis all or none lie
+  /// between voxels, with the bits of add_field() of each.
+  /// @returns false for other points, which are left as they are
+  static bool add_field(const FieldView& field, const EightIndices& index, EightPositions& x) {
+    if (index.inside != 0xff) return false;
+    const Tag d;
+    const hn::Rebind<float, Tag> df;
+    alignas(64) double place[cell_edge];
+    alignas(64) float fraction[3][cell_edge];
+    std::int64_t step[3], stride = 3;  // to the neighbor along an axis; 0: it is not read
+    for (int axis = 0; axis < 3; ++axis) {
+      unsigned between = 0;
+      const auto first = hn::Set(d, axis == 0 ? -3.0 * static_cast<double>(field.first) : 0.0);
+      for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+        const auto f = hn::Load(d, index.fraction[axis] + lane);
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, hn::Gt(f, hn::Zero(d)), bits);
+        between |= unsigned{bits[0]} << lane;
+        hn::Store(hn::DemoteTo(df, f), df, fraction[axis] + lane);
+        const auto before = axis == 0 ? first : hn::Load(d, place + lane);
+        const auto along =
+            hn::Mul(hn::Set(d, static_cast<double>(stride)), hn::Load(d, index.lower[axis] + lane));
+        hn::Store(hn::Add(before, along), d, place + lane);
+      }
+      if (between != 0 && between != 0xff) return false;
+      step[axis] = between != 0 ? stride : 0;
+      stride *= field.size[axis];
+    }
+    // Four numbers are read from each neighbor on.
+    const auto last = hn::Set(d, static_cast<double>(stride - 4 - step[0] - step[1] - step[2]));
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      if (!hn::AllTrue(d, hn::Le(hn::Load(d, place + lane), last))) return false;
+    }
+    alignas(64) float vectors[4 * cell_edge];
+    interpolate(field, place, step, fraction, vectors);
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      hn::Vec<decltype(df)> vector[4];
+      hn::LoadInterleaved4(df, vectors + 4 * lane, vector[0], vector[1], vector[2], vector[3]);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto moved = hn::Add(hn::Load(d, x.at[axis] + lane), hn::PromoteTo(d, vector[axis]));
+        hn::Store(moved, d, x.at[axis] + lane);
+      }
+    }
+    return true;
+  }
+
+  /// The vectors of eight points: two at a time where vectors have eight lanes.
+  /// @param place     of their lower neighbors, in numbers
+  /// @param step      to the upper neighbors, in numbers
+  /// @param fraction  along each axis
+  /// @param vectors   out, four numbers each
+  static void interpolate(const FieldView& field,
+                          const double* place,
+                          const std::int64_t* step,
+                          const float (*fraction)[cell_edge],
+                          float* vectors) {
+    const PointTag d;
+    const std::size_t points = hn::Lanes(d) / 4;
+    const std::int64_t sx = step[0], sy = step[1], sz = step[2];
+    for (std::size_t lane = 0; lane < cell_edge; lane += points) {
+      const auto of = [&](std::size_t n) {
+        return field.vectors + static_cast<std::int64_t>(place[n]);
+      };
+      const float *const first = of(lane), *const second = of(lane + points - 1);
+      const auto fx = of_fractions(d, fraction[0] + lane);
+      const auto along_x = [&](std::int64_t at) {
+        return lerp(fx, of_points(d, first + at, second + at),
+                    of_points(d, first + at + sx, second + at + sx));
+      };
+      const auto fy = of_fractions(d, fraction[1] + lane);
+      const auto near = lerp(fy, along_x(0), along_x(sy));
+      const auto next = lerp(fy, along_x(sz), along_x(sz + sy));
+      hn::Store(lerp(of_fractions(d, fraction[2] + lane), near, next), d, vectors + 4 * lane);
+    }
+  }
+
+  /// Four numbers of one point or of two.
+  using PointTag = hn::CappedTag<float, 8>;
+
+  /// Of as many points as a vector holds, from `second` only if it holds two.
+  template <class D>
+  static HWY_INLINE hn::Vec<D> of_points(D d, const float* first, const float* second) {
+    const hn::FixedTag<float, 4> point;
+    if constexpr (hn::MaxLanes(D()) == 8) {
+      return hn::Combine(d, hn::LoadU(point, second), hn::LoadU(point, first));
+    } else {
+      return hn::LoadU(d, first);
+    }
+  }
+
+  /// The fraction of each point, four times.
+  template <class D>
+  static HWY_INLINE hn::Vec<D> of_fractions(D d, const float* fraction) {
+    const hn::FixedTag<float, 4> point;
+    if constexpr (hn::MaxLanes(D()) == 8) {
+      return hn::Combine(d, hn::Set(point, fraction[1]), hn::Set(point, fraction[0]));
+    } else {
+      return hn::Set(d, fraction[0]);
+    }
+  }
+
+  template <class V>
+  static HWY_INLINE V lerp(V f, V a, V b) {
+    return hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
   }
 
   /// Adds the vector of a field to a point: its three components at once.
@@ -188,7 +295,6 @@ class RowLinks {
     const auto fx = hn::Set(d, static_cast<float>(index.fraction[0][lane]));
     const auto fy = hn::Set(d, static_cast<float>(index.fraction[1][lane]));
     const auto fz = hn::Set(d, static_cast<float>(index.fraction[2][lane]));
-    const auto lerp = [](auto f, auto a, auto b) { return hn::Add(a, hn::Mul(f, hn::Sub(b, a))); };
     const auto load = [&](const float* from) {
       if (!is_last) return hn::LoadU(d, from);
       alignas(16) const float numbers[4] = {from[0], from[1], from[2], 0};
