@@ -53,7 +53,11 @@ class RowResampler {
   void run(std::int64_t row) {
     const std::int64_t j = op_.begin[0] + row % op_.dims[1], k = op_.begin[1] + row / op_.dims[1],
                        nx = op_.dims[0];
-    if (field_.is_used()) field_.set_row(j, k);
+    if (field_.is_used()) {
+      field_.set_row(j, k);
+    } else if (links_.are_used()) {
+      links_.set_row(j, k);
+    }
     for (std::int64_t i = 0; i < nx; i += cell_edge) {
       // The last eight voxels may repeat some of those before them.
       add(std::min(i, nx - cell_edge), j, k, row);
@@ -72,8 +76,8 @@ class RowResampler {
     unsigned inside = 0;
     if (field_.is_used()) {
       inside = add_direct(i, j, k, field_.vectors(i), at) & field_.inside(i);
-    } else if (op_.map.links.size > 0) {
-      inside = add_linked(i, j, k, at);
+    } else if (links_.are_used()) {
+      inside = add_linked(i, at);
     } else {
       inside = add_direct(i, j, k, op_.map.has_field() ? op_.map.field.at(i, j, k) : nullptr, at);
     }
@@ -128,29 +132,29 @@ class RowResampler {
   }
 
   /// The same by links.
-  unsigned add_linked(std::int64_t i, std::int64_t j, std::int64_t k, std::size_t at) {
+  unsigned add_linked(std::int64_t i, std::size_t at) {
     EightPositions position;
-    const unsigned not_background = links_.positions(i, j, k, position);
+    const unsigned not_background = links_.positions(i, position);
     alignas(64) float local[3][cell_edge];
     alignas(64) std::int32_t whole[3][cell_edge];
     const hn::CappedTag<double, cell_edge> dd;
     const hn::Rebind<float, decltype(dd)> df;
     const hn::Rebind<std::int32_t, decltype(dd)> di;
-    unsigned numbers = 0xff;
+    constexpr unsigned all = (1u << hn::MaxLanes(decltype(dd)())) - 1;
+    unsigned numbers = 0;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(dd)) {
+      auto are_numbers = hn::Eq(hn::Zero(dd), hn::Zero(dd));
       for (int axis = 0; axis < 3; ++axis) {
         const auto any = hn::Load(dd, position.at[axis] + lane);
         const auto is_number = hn::Eq(any, any);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(dd, is_number, bits);
-        const unsigned all = (1u << hn::Lanes(dd)) - 1;
-        numbers &= ~((~unsigned{bits[0]} & all) << lane);
+        are_numbers = hn::And(are_numbers, is_number);
         const auto x = hn::IfThenElseZero(is_number, any);
         const auto near = hn::Min(hn::Max(x, hn::Set(dd, -far)), hn::Set(dd, far));
         const auto lower = hn::Floor(near);
         hn::Store(hn::DemoteTo(df, hn::Sub(near, lower)), df, local[axis] + lane);
         hn::Store(hn::DemoteTo(di, lower), di, whole[axis] + lane);
       }
+      numbers |= RowLinks::bits_of_mask(are_numbers, all) << lane;
     }
     unsigned inside = 0;
     const RowTag d;
