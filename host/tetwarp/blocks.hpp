@@ -66,9 +66,9 @@ struct BlockPlan {
 /// Divides the steps of a series into blocks.
 class TETWARP_EXPORT BlockPlanner {
  public:
-  /// @param source   grid of the sources
-  /// @param mesh     of the whole; copied
-  /// @param options  as for a Warper of the whole; `source_window` is ignored
+  /// @param source     grid of the sources
+  /// @param mesh       of the whole; copied
+  /// @param options    as for a Warper of the whole; `source_window` is ignored
   /// @param mid_nodes  those of a CurvedMesh: blocks then read what curved maps lead to
   /// @throws std::invalid_argument when the grid or the mesh is invalid
   BlockPlanner(const Grid& source,

@@ -101,11 +101,11 @@ class RowLinks {
 
   using Tag = hn::CappedTag<double, cell_edge>;
 
-  /// @param all  the bits of a mask that is true in all lanes
+  /// A mask of points as bits.
   template <class Mask>
-  static HWY_INLINE unsigned bits_of_mask(const Mask& mask, unsigned all) {
+  static HWY_INLINE unsigned bits_of_mask(const Mask& mask) {
     const Tag d;
-    if (HWY_LIKELY(hn::AllTrue(d, mask))) return all;
+    if (HWY_LIKELY(hn::AllTrue(d, mask))) return (1u << hn::Lanes(d)) - 1;
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, mask, bits);
     return bits[0];
@@ -167,7 +167,6 @@ class RowLinks {
   static HWY_INLINE void split(const TransformLink& link, EightIndices& index, const At& at) {
     const Tag d;
     const Bounds bounds[3] = {bounds_of(link, 0), bounds_of(link, 1), bounds_of(link, 2)};
-    constexpr unsigned all = (1u << hn::MaxLanes(Tag())) - 1;
     index.inside = 0;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
       hn::Vec<Tag> position[3];
@@ -185,7 +184,7 @@ class RowLinks {
         hn::Store(lower, d, index.lower[axis] + lane);
         hn::Store(hn::Sub(x, lower), d, index.fraction[axis] + lane);
       }
-      index.inside |= bits_of_mask(are_inside, all) << lane;
+      index.inside |= bits_of_mask(are_inside) << lane;
     }
   }
 

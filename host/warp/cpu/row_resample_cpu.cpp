@@ -140,7 +140,6 @@ class RowResampler {
     const hn::CappedTag<double, cell_edge> dd;
     const hn::Rebind<float, decltype(dd)> df;
     const hn::Rebind<std::int32_t, decltype(dd)> di;
-    constexpr unsigned all = (1u << hn::MaxLanes(decltype(dd)())) - 1;
     unsigned numbers = 0;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(dd)) {
       auto are_numbers = hn::Eq(hn::Zero(dd), hn::Zero(dd));
@@ -154,7 +153,7 @@ class RowResampler {
         hn::Store(hn::DemoteTo(df, hn::Sub(near, lower)), df, local[axis] + lane);
         hn::Store(hn::DemoteTo(di, lower), di, whole[axis] + lane);
       }
-      numbers |= RowLinks::bits_of_mask(are_numbers, all) << lane;
+      numbers |= RowLinks::bits_of_mask(are_numbers) << lane;
     }
     unsigned inside = 0;
     const RowTag d;
