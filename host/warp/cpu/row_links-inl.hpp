@@ -293,7 +293,7 @@ class RowLinks {
     // What the next row of the output reads, if the field is turned little: the processor does not
     // prefetch across this distance.
     const std::int64_t ahead = 3 * field.size[0];
-    for (std::size_t lane = 0; lane < cell_edge; lane += cell_edge / 2) {
+    for (std::size_t lane = 0; lane < cell_edge; lane += 2) {
       const float* const v = field.vectors + static_cast<std::int64_t>(place[lane]);
       hwy::Prefetch(v + sy + ahead);
       hwy::Prefetch(v + sy + sz + ahead);
