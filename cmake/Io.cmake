@@ -18,7 +18,7 @@ tetwarp_sources(tetwarp_io io/fclib
   fclib_numbers.cpp fclib_rows.cpp fclib_write.cpp)
 tetwarp_sources(tetwarp_io io/files
   extension.cpp finished_file.cpp leftover_files.cpp memory.cpp names.cpp numbered_files.cpp
-  scratch_file.cpp sha256.cpp sink_checks.cpp text_file.cpp)
+  read_check.cpp scratch_file.cpp sha256.cpp sink_checks.cpp text_file.cpp)
 tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_output.cpp h5_read.cpp h5_rows.cpp h5_write.cpp
   value_names.cpp)

@@ -18,6 +18,7 @@
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
+#include "python/curved_arrays.hpp"
 #include "python/file_call.hpp"
 
 namespace tetwarp::python {
@@ -136,15 +137,22 @@ void write_volume_file(const std::string& path,
 /// A MeshReader, whose calls are file calls.
 class MeshFile {
  public:
-  MeshFile(const std::string& path, std::int64_t rest_step, const std::string& axes)
-      : reader_(open(path, rest_step, axes)) {}
+  MeshFile(const std::string& path,
+           std::int64_t rest_step,
+           const std::string& axes,
+           bool keeps_curved)
+      : reader_(open(path, rest_step, axes, keeps_curved)) {}
 
   const MeshReader& reader() const { return reader_; }
 
  private:
-  static MeshReader open(const std::string& path, std::int64_t rest_step, const std::string& axes) {
+  static MeshReader open(const std::string& path,
+                         std::int64_t rest_step,
+                         const std::string& axes,
+                         bool keeps_curved) {
     MeshReadOptions options;
     options.rest_step = rest_step;
+    options.import.keeps_curved = keeps_curved;
     options.import.axes = choice<Axes>("axes", axes);
     return file_call([&] { return MeshReader(path, options); });
   }
@@ -155,7 +163,8 @@ class MeshFile {
 nb::tuple mesh_arrays(const MeshFile& file) {
   Mesh mesh = file.reader().mesh();
   return nb::make_tuple(array_of(std::move(mesh.rest_positions)), array_of(std::move(mesh.tets)),
-                        array_of(std::move(mesh.hexes)));
+                        array_of(std::move(mesh.hexes)),
+                        array_of(std::vector(file.reader().mid_nodes())));
 }
 
 /// @param displacements  [steps] of [nodes][3]
@@ -163,9 +172,10 @@ void write_mesh_file(const std::string& path,
                      const InPoints& points,
                      const InTets& tets,
                      const InHexes& hexes,
+                     const InMidNodes& mids,
                      const std::vector<InPoints>& displacements,
                      const std::vector<double>& times) {
-  const Mesh mesh = mesh_of(points, tets, hexes);
+  const CurvedMesh mesh = curved_mesh_of(points, tets, hexes, mids);
   std::vector<std::vector<Point3>> steps;
   steps.reserve(displacements.size());
   for (const InPoints& step : displacements) steps.push_back(points_of(step));
@@ -200,8 +210,8 @@ void bind_files(nb::module_& module) {
   module.def("write_volumes", &write_volume_file, nb::arg("path"), nb::arg("grid"),
              nb::arg("arrays"), nb::arg("times"), nb::arg("compress"));
   nb::class_<MeshFile>(module, "MeshFile")
-      .def(nb::init<const std::string&, std::int64_t, const std::string&>(), nb::arg("path"),
-           nb::arg("rest_step"), nb::arg("axes"))
+      .def(nb::init<const std::string&, std::int64_t, const std::string&, bool>(), nb::arg("path"),
+           nb::arg("rest_step"), nb::arg("axes"), nb::arg("keeps_curved"))
       .def("mesh", &mesh_arrays)
       .def_prop_ro("times", [](const MeshFile& file) { return file.reader().header().times; })
       .def_prop_ro("not_read", [](const MeshFile& file) { return file.reader().header().not_read; })
@@ -212,7 +222,7 @@ void bind_files(nb::module_& module) {
           },
           nb::arg("step"));
   module.def("write_mesh", &write_mesh_file, nb::arg("path"), nb::arg("points"), nb::arg("tets"),
-             nb::arg("hexes"), nb::arg("displacements"), nb::arg("times"));
+             nb::arg("hexes"), nb::arg("mids"), nb::arg("displacements"), nb::arg("times"));
   module.def(
       "read_surface",
       [](const std::string& path) {

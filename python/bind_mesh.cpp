@@ -13,6 +13,7 @@
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
+#include "python/curved_arrays.hpp"
 
 namespace tetwarp::python {
 namespace {
@@ -82,18 +83,26 @@ void bind_mesh(nb::module_& module) {
   module.def(
       "map_points",
       [](const InPoints& points, const std::optional<Grid>& grid, const InPoints& rest,
-         const InTets& tets, const InHexes& hexes, const InPoints& deformed, bool inverse) {
+         const InTets& tets, const InHexes& hexes, const InMidNodes& mids, const InPoints& deformed,
+         bool inverse) {
         MappedPoints mapped;
         {
           const nb::gil_scoped_release release;
-          mapped = map_points(mesh_of(rest, tets, hexes), points_of(deformed), points_of(points),
-                              {.inverse = inverse, .grid = grid});
+          mapped = map_points(curved_mesh_of(rest, tets, hexes, mids), points_of(deformed),
+                              points_of(points), {.inverse = inverse, .grid = grid});
         }
         return nb::make_tuple(array_of(std::move(mapped.points)),
-                              array_of(std::move(mapped.owners)));
+                              array_of(std::move(mapped.owners)), mapped.straightened);
       },
       nb::arg("points"), nb::arg("grid").none(), nb::arg("rest"), nb::arg("tets"), nb::arg("hexes"),
-      nb::arg("deformed"), nb::arg("inverse"));
+      nb::arg("mids"), nb::arg("deformed"), nb::arg("inverse"));
+  module.def(
+      "split_ten_nodes",
+      [](const InTets& tets, const InMidNodes& mids) {
+        const CurvedMesh mesh{{{}, tets_of(tets), {}}, mid_nodes_of(mids)};
+        return array_of(split_curved(mesh).tets);
+      },
+      nb::arg("tets"), nb::arg("mids"));
 }
 
 }  // namespace tetwarp::python

@@ -22,6 +22,7 @@
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
+#include "python/curved_arrays.hpp"
 #include "python/interruption.hpp"
 
 namespace tetwarp::python {
@@ -38,7 +39,7 @@ class ArrayWarper {
  public:
   ArrayWarper(std::vector<AnySamples> sources,
               const Grid& grid,
-              const Mesh& mesh,
+              const CurvedMesh& mesh,
               const WarpOptions& options)
       : sources_(std::move(sources)), warper_(make_warper(grid, mesh, options)) {}
 
@@ -59,7 +60,7 @@ class ArrayWarper {
   }
 
  private:
-  Warper make_warper(const Grid& grid, const Mesh& mesh, const WarpOptions& options) const {
+  Warper make_warper(const Grid& grid, const CurvedMesh& mesh, const WarpOptions& options) const {
     std::vector<VolumeView> views;
     for (const AnySamples& samples : sources_) views.push_back(view_of(samples, grid));
     const nb::gil_scoped_release release;
@@ -150,6 +151,7 @@ void make_array_warper(ArrayWarper* self,
                        const InPoints& points,
                        const InTets& tets,
                        const InHexes& hexes,
+                       const InMidNodes& mids,
                        const std::string& interpolator,
                        const std::string& label_rule,
                        const std::array<double, 2>& label_gaussian,
@@ -180,18 +182,19 @@ void make_array_warper(ArrayWarper* self,
   for (const std::string& word : quantities) {
     options.quantities.push_back(choice<Quantity>("quantity", word));
   }
-  new (self) ArrayWarper(std::move(sources), grid, mesh_of(points, tets, hexes), options);
+  new (self)
+      ArrayWarper(std::move(sources), grid, curved_mesh_of(points, tets, hexes, mids), options);
 }
 }  // namespace
 
 void bind_warp(nb::module_& module) {
   nb::class_<ArrayWarper>(module, "Warper")
       .def("__init__", &make_array_warper, nb::arg("sources"), nb::arg("grid"), nb::arg("points"),
-           nb::arg("tets"), nb::arg("hexes"), nb::kw_only(), nb::arg("interpolator"),
-           nb::arg("label_rule"), nb::arg("label_gaussian"), nb::arg("overshoot"),
-           nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"), nb::arg("outside"),
-           nb::arg("falloff"), nb::arg("default_value"), nb::arg("output_grid").none(),
-           nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
+           nb::arg("tets"), nb::arg("hexes"), nb::arg("mids"), nb::kw_only(),
+           nb::arg("interpolator"), nb::arg("label_rule"), nb::arg("label_gaussian"),
+           nb::arg("overshoot"), nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"),
+           nb::arg("outside"), nb::arg("falloff"), nb::arg("default_value"),
+           nb::arg("output_grid").none(), nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
       .def("report", [](const ArrayWarper& self) { return to_json(self.warper().report()); })
       .def("step", &run_step, nb::arg("deformed"), nb::arg("volumes"), nb::arg("extras"),
            nb::arg("holds_previous"), nb::arg("stream"), nb::arg("progress").none());

@@ -21,6 +21,7 @@
 #include <memory>
 #include <vector>
 
+#include <tetwarp/curved_mesh.hpp>
 #include <tetwarp/export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/volume.hpp>
@@ -65,11 +66,15 @@ struct BlockPlan {
 /// Divides the steps of a series into blocks.
 class TETWARP_EXPORT BlockPlanner {
  public:
-  /// @param source   grid of the sources
-  /// @param mesh     of the whole; copied
-  /// @param options  as for a Warper of the whole; `source_window` is ignored
+  /// @param source     grid of the sources
+  /// @param mesh       of the whole; copied
+  /// @param options    as for a Warper of the whole; `source_window` is ignored
+  /// @param mid_nodes  those of a CurvedMesh: blocks then read what curved maps lead to
   /// @throws std::invalid_argument when the grid or the mesh is invalid
-  BlockPlanner(const Grid& source, const Mesh& mesh, const WarpOptions& options);
+  BlockPlanner(const Grid& source,
+               const Mesh& mesh,
+               const WarpOptions& options,
+               const std::vector<MidNodes>& mid_nodes = {});
   BlockPlanner(BlockPlanner&&) noexcept;
   ~BlockPlanner();
 
@@ -90,6 +95,7 @@ class TETWARP_EXPORT BlockPlanner {
 struct TETWARP_EXPORT BlockMesh {
   Mesh mesh;                        ///< with its own numbers of cells and nodes
   std::vector<std::int32_t> nodes;  ///< number in the whole mesh of each node of the part
+  std::vector<MidNodes> mid_nodes;  ///< of its tetrahedra, as those of CurvedMesh
 
   /// Picks the positions of the part's nodes from those of the whole mesh.
   std::vector<Point3> of(const std::vector<Point3>& positions) const;
@@ -98,6 +104,9 @@ struct TETWARP_EXPORT BlockMesh {
 /// The mesh of a block's cells. For a block without cells: the first cell of the mesh, because a
 /// Warper requires one. Cell c of the part is cell block.cells[c] of the mesh. Nodes keep their
 /// order, so that hexahedra are split into the same tetrahedra.
-TETWARP_EXPORT BlockMesh block_mesh(const Mesh& mesh, const WarpBlock& block);
+/// @param mid_nodes  those of a CurvedMesh, for which check_mid_nodes() has passed
+TETWARP_EXPORT BlockMesh block_mesh(const Mesh& mesh,
+                                    const WarpBlock& block,
+                                    const std::vector<MidNodes>& mid_nodes = {});
 
 }  // namespace tetwarp

@@ -219,8 +219,8 @@ class TETWARP_EXPORT Warper {
   Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options = {});
   Warper(const Volume& source, const Mesh& mesh, const WarpOptions& options = {});
   /// By the curved maps of tetrahedra of ten nodes, see CurvedMesh. For values as they are: no
-  /// antialias, densities, vectors and tensors, label rules but linear, source window and forward
-  /// field; for these pass split_curved(mesh).
+  /// antialias, densities, vectors and tensors, label rules but linear, and forward field; for
+  /// these pass split_curved(mesh).
   /// @throws std::invalid_argument  also about these, and what check_mid_nodes() throws
   Warper(std::span<const VolumeView> sources,
          const CurvedMesh& mesh,

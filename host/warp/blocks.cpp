@@ -12,6 +12,7 @@
 
 #include "host/base/parallel.hpp"
 #include "host/warp/bad_positions.hpp"
+#include "host/warp/curve_footprint.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/hex_split.hpp"
 #include "host/warp/sources.hpp"
@@ -69,7 +70,8 @@ WarpPlan plan_of(const Grid& source, const Mesh& mesh, const WarpOptions& option
 }  // namespace
 
 struct BlockPlanner::State {
-  Mesh mesh;  ///< as in WarpPlan
+  Mesh mesh;                        ///< as in WarpPlan
+  std::vector<MidNodes> mid_nodes;  ///< as of CurvedMesh
   Grid source;
   WarpOptions options;
   WarpGeometry geometry;
@@ -101,12 +103,18 @@ struct BlockPlanner::State {
   VoxelBox source_of(const VoxelBox& box, const std::vector<std::int32_t>& cells) const;
 };
 
-BlockPlanner::BlockPlanner(const Grid& source, const Mesh& mesh, const WarpOptions& options)
+BlockPlanner::BlockPlanner(const Grid& source,
+                           const Mesh& mesh,
+                           const WarpOptions& options,
+                           const std::vector<MidNodes>& mid_nodes)
     : state_(std::make_unique<State>(State{with_split_hexes(mesh),
+                                           mid_nodes,
                                            source,
                                            options,
                                            make_geometry(plan_of(source, mesh, options)),
-                                           {}})) {}
+                                           {}})) {
+  check_mid_nodes(mesh, mid_nodes);
+}
 
 BlockPlanner::BlockPlanner(BlockPlanner&&) noexcept = default;
 BlockPlanner::~BlockPlanner() = default;
@@ -145,9 +153,14 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
       for (std::int64_t first = bad; t < first && !bad.compare_exchange_weak(first, t);) {
       }
     }
-    if (tet_class != TetClass::regular && tet_class != TetClass::inverted) setup = {};
-    footprints[static_cast<std::size_t>(t)] =
-        footprint_of(setup, tet_nodes(rest, ids + 4 * t), spread);
+    const bool owns = tet_class == TetClass::regular || tet_class == TetClass::inverted;
+    if (!owns) setup = {};
+    const auto tet = static_cast<std::size_t>(t);
+    footprints[tet] = footprint_of(setup, tet_nodes(rest, ids + 4 * t), spread);
+    if (owns && tet < mid_nodes.size() && mid_nodes[tet] != no_mid_nodes) {
+      extend_by_curve(setup, op.deformed, rest, ids + 4 * t, mid_nodes[tet].data(),
+                      footprints[tet]);
+    }
   });
   if (bad < tet_count) {
     TetSetup setup = {};
@@ -223,7 +236,9 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
   // Per tetrahedron: setup, nodes, mesh. Per pair: the list and its copy for sorting. Per output
   // voxel: ranges, counts and work of cells, which have 512 voxels. Per source voxel: two bytes for
   // each block that may be constant.
-  constexpr double tet_bytes = 600, pair_bytes = 32, output_share = 0.1, source_share = 0.005;
+  constexpr double straight_bytes = 600, curve_bytes = 300;
+  constexpr double pair_bytes = 32, output_share = 0.1, source_share = 0.005;
+  const double tet_bytes = straight_bytes + (mid_nodes.empty() ? 0 : curve_bytes);
   const auto hexes = cells.end() - std::ranges::lower_bound(cells, lone_tet_count());
   const auto tets = std::ssize(cells) + (tets_per_hex - 1) * hexes;
   const double around = tet_bytes * static_cast<double>(tets) +

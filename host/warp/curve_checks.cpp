@@ -1,5 +1,5 @@
 /// @file curve_checks.cpp
-/// Rejects what is computed from one affine map per tetrahedron, or from parts of a source.
+/// Rejects what is computed from one affine map per tetrahedron.
 #include "host/warp/curve_checks.hpp"
 
 #include <algorithm>
@@ -21,7 +21,6 @@ std::string curves_refusal(const WarpOptions& options, bool forward) {
   if (options.label_rule != LabelRule::linear) {
     return refused(std::string("label rule ") + name_of(options.label_rule), "uses affine maps");
   }
-  if (options.source_window) return refused("a window of the source", "is found by affine maps");
   if (forward) return refused("the forward displacement", "is that of affine maps");
   return {};
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/child/foreign_image.hpp"
+#include "io/files/read_check.hpp"
 #include "io/files/scratch_file.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
@@ -69,7 +70,11 @@ class ForeignSource : public VolumeSource {
   std::int64_t bytes() const { return image_.grid.voxel_count() * voxel_bytes(); }
 
   void receive(const TakeSlice& take) const {
-    read_samples_in_child(path_, series_, image_, array_.name, take);
+    read_samples_in_child(path_, series_, image_, array_.name,
+                          [&](const void* slice, std::size_t count) {
+                            check_read();
+                            take(slice, count);
+                          });
   }
 
   void unpack() {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "io/files/memory.hpp"
+#include "io/files/read_check.hpp"
 #include "io/files/scratch_file.hpp"
 #include "io/image/meta_header.hpp"
 #include "io/image/mgh_header.hpp"
@@ -85,7 +86,8 @@ class Unpacker {
     stream_.next_out = static_cast<Bytef*>(out);
     while (bytes > 0 && is_sound_) {
       if (stream_.avail_in == 0 && !fill()) return false;
-      const auto part = static_cast<uInt>(std::min<std::size_t>(bytes, std::size_t{1} << 30));
+      check_read();
+      const auto part = static_cast<uInt>(std::min<std::size_t>(bytes, nifti_part_bytes));
       stream_.avail_out = part;
       const int state = inflate(&stream_, Z_NO_FLUSH);
       bytes -= part - stream_.avail_out;

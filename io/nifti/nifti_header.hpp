@@ -31,6 +31,7 @@ class NiftiStream {
   bool read(void* out, std::size_t bytes) { return znzread(out, 1, bytes, file_) == bytes; }
   bool write(const void* in, std::size_t bytes) { return znzwrite(in, 1, bytes, file_) == bytes; }
   bool seek(std::int64_t offset) { return znzseek(file_, offset, SEEK_SET) >= 0; }
+  std::int64_t position() const { return znztell(file_); }
 
   /// As many of `bytes` as there are, at most.
   std::size_t read_some(void* out, std::size_t bytes) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "host/base/pixel_dispatch.hpp"
+#include "io/files/read_check.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
 namespace tetwarp {
@@ -129,13 +130,23 @@ class NiftiSamples::Source {
   /// @param out  has room for one byte more
   /// @returns false when the bytes are not there, or a gzip file is damaged behind the last sample
   bool read(std::int64_t offset, void* out, std::size_t bytes) {
+    check_read();
     if (!stream_) return descriptor_ >= 0 && read_at(descriptor_, out, bytes, offset);
-    if (!*stream_ || !stream_->seek(offset)) return false;
+    if (!*stream_ || !reach(offset)) return false;
     const bool is_last = offset + static_cast<std::int64_t>(bytes) == end_;
     return is_last ? stream_->read_last(out, bytes) : stream_->read(out, bytes);
   }
 
  private:
+  /// Goes on to an offset part by part: what is skipped is unpacked, too.
+  bool reach(std::int64_t offset) {
+    constexpr std::int64_t part = nifti_part_bytes;
+    for (std::byte last; offset - stream_->position() > part; check_read()) {
+      if (!stream_->seek(stream_->position() + part - 1) || !stream_->read(&last, 1)) return false;
+    }
+    return stream_->seek(offset);
+  }
+
   std::string path_;
   std::int64_t end_ = 0;
   int descriptor_ = -1;

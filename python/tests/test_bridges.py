@@ -99,5 +99,5 @@ def test_other_cells_are_no_mesh():
     blocks = {"triangle": np.array([(0, 1, 2)]), "wedge": np.array([(0, 1, 2, 3, 4, 5)])}
     other = type("Mesh", (), {"points": np.zeros((6, 3)), "cells_dict": blocks})
 
-    with pytest.raises(ValueError, match="mesh: expected linear tetrahedra.* found cells of wedge"):
+    with pytest.raises(ValueError, match="mesh: expected tetrahedra of four or ten.* found cells of wedge"):
         tetwarp.mesh_from(other)

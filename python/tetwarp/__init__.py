@@ -2,7 +2,7 @@
 frictional, adhesive contact.
 
 Volumes are arrays of shape (z, y, x) or (z, y, x, components) in C order, meshes are (n, 3) nodes
-and (m, 4) or (m, 8) cells. See docs/python.md.
+and (m, 4), (m, 10) or (m, 8) cells. See docs/python.md.
 """
 
 from ._autograd import autograd_warp
@@ -30,7 +30,15 @@ from ._fields import (
 )
 from ._files import MeshFile, VolumeHeader, read, read_header, write
 from ._grid import Grid
-from ._mesh import Mesh, Surface, boundary_surface, deform, isosurface, lattice_mesh
+from ._mesh import (
+    Mesh,
+    Surface,
+    boundary_surface,
+    deform,
+    isosurface,
+    lattice_mesh,
+    split_ten_nodes,
+)
 from ._operator import WarpOperator
 from ._result import WarpResult
 from ._simulate import Contacts, Simulator, StepRecord, shipped_scene, shipped_scenes
@@ -84,6 +92,7 @@ __all__ = [
     "shipped_scene",
     "shipped_scenes",
     "solve_contacts",
+    "split_ten_nodes",
     "strain",
     "to_meshio",
     "to_nibabel",

@@ -14,7 +14,8 @@ from . import _core
 PIXEL_TYPES = (
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64",
 )
-_NO_CELLS = {4: np.empty((0, 4), np.int32), 8: np.empty((0, 8), np.int32)}
+_NO_CELLS = {n: np.empty((0, n), np.int32) for n in (4, 6, 8)}
+_SPLIT = "tetwarp.split_ten_nodes(cells)"
 _FLOAT64, _INT32 = np.dtype(np.float64), np.dtype(np.int32)
 
 
@@ -194,33 +195,33 @@ def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     return array
 
 
-def check_indices(array: np.ndarray, name: str, node_count: int) -> None:
-    """Raises ValueError if a number is none of a node."""
-    if array.size and (array.min() < 0 or array.max() >= node_count):
-        wrong = int(array.min()) if array.min() < 0 else int(array.max())
+def check_indices(array: np.ndarray, name: str, node_count: int, least: int = 0) -> None:
+    """Raises ValueError if a number is none of a node, or -1 where that is the `least`."""
+    if array.size and (array.min() < least or array.max() >= node_count):
+        wrong = int(array.min()) if array.min() < least else int(array.max())
         raise ValueError(
             f"{name}: expected numbers of nodes from 0 to {node_count - 1}, found {wrong}"
         )
 
 
-def _integers(array: np.ndarray, name: str, node_count: int) -> np.ndarray:
+def _integers(array: np.ndarray, name: str, node_count: int, least: int = 0) -> np.ndarray:
     """Numbers of nodes as int32 in C order; those that are int32 are not checked."""
     if _is_plain(array, _INT32):
         return array
     if array.dtype.kind not in "iu":
         raise ValueError(f"{name}: expected integers, numbers of nodes, got {array.dtype}")
-    check_indices(array, name, node_count)  # before they are cut
+    check_indices(array, name, node_count, least)  # before they are cut
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
 def _cells_of_one_kind(value: Any, name: str, node_count: int) -> np.ndarray:
     array = array_of(value, name)
-    if array.ndim != 2 or array.shape[1] not in (4, 8):
+    if array.ndim != 2 or array.shape[1] not in (4, 8, 10):
         raise ValueError(
-            f"{name}: expected shape (m, 4) for tetrahedra or (m, 8) for hexahedra, "
+            f"{name}: expected shape (m, 4) or (m, 10) for tetrahedra or (m, 8) for hexahedra, "
             f"got {array.shape}"
         )
-    return _integers(array, name, node_count)
+    return _integers(array, name, node_count, -1 if array.shape[1] == 10 else 0)
 
 
 def triangles_of(value: Any, name: str, node_count: int) -> np.ndarray:
@@ -233,28 +234,58 @@ def triangles_of(value: Any, name: str, node_count: int) -> np.ndarray:
     return triangles
 
 
-def given_cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.ndarray]:
-    """As cells_of(); numbers of nodes that are int32 are not checked."""
+def given_cells_of(
+    value: Any, name: str, node_count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """As curved_cells_of(); numbers of nodes that are int32 are not checked."""
     if isinstance(value, (tuple, list)) and len(value) == 2 and np.ndim(value[0]) == 2:
         parts = [_cells_of_one_kind(part, name, node_count) for part in value]
-        if [part.shape[1] for part in parts] != [4, 8]:
-            raise ValueError(f"{name}: a pair is tetrahedra (m, 4), then hexahedra (m, 8)")
+        if parts[0].shape[1] not in (4, 10) or parts[1].shape[1] != 8:
+            raise ValueError(
+                f"{name}: a pair is tetrahedra (m, 4) or (m, 10), then hexahedra (m, 8)")
         tets, hexes = parts
     else:
         one = _cells_of_one_kind(value, name, node_count)
-        tets = one if one.shape[1] == 4 else _NO_CELLS[4]
-        hexes = one if one.shape[1] == 8 else _NO_CELLS[8]
+        tets, hexes = (_NO_CELLS[4], one) if one.shape[1] == 8 else (one, _NO_CELLS[8])
     if len(tets) + len(hexes) == 0:
         raise ValueError(f"{name}: expected at least one cell")
-    return tets, hexes
+    if tets.shape[1] == 4:
+        return tets, hexes, _NO_CELLS[6]
+    return np.ascontiguousarray(tets[:, :4]), hexes, np.ascontiguousarray(tets[:, 4:])
+
+
+def check_cells(cells: Sequence[np.ndarray], name: str, node_count: int) -> None:
+    """Raises ValueError if a number in what given_cells_of() returns is none of a node."""
+    tets, hexes, mids = cells
+    for part in (tets, hexes, mids[(mids != -1).any(axis=1)]):
+        check_indices(part, name, node_count)
+
+
+def curved_cells_of(
+    value: Any, name: str, node_count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Corners of tetrahedra (m, 4), hexahedra (k, 8), and the nodes on edges of tetrahedra (m, 6), -1
+    for those of four nodes, or (0, 6) where there is no tetrahedron of ten; all int32. `value` is
+    (m, 4), (m, 10), (k, 8), or a pair of tetrahedra and hexahedra.
+    """
+    cells = given_cells_of(value, name, node_count)
+    check_cells(cells, name, node_count)
+    return cells
 
 
 def cells_of(value: Any, name: str, node_count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Tetrahedra (m, 4) and hexahedra (m, 8) as int32; `value` is one of them or a pair."""
-    cells = given_cells_of(value, name, node_count)
-    for part in cells:
-        check_indices(part, name, node_count)
-    return cells
+    """Tetrahedra (m, 4) and hexahedra (k, 8) as int32; refuses tetrahedra of ten nodes."""
+    tets, hexes, mids = curved_cells_of(value, name, node_count)
+    if (mids >= 0).any():
+        raise ValueError(f"{name}: tetrahedra of ten nodes are for warps, fields and points; "
+                         f"{_SPLIT} cuts them into straight ones")
+    return tets, hexes
+
+
+def with_remedy(error: Exception) -> Exception:
+    """An error of the library about tetrahedra of ten nodes with what splits them."""
+    refused = str(error).endswith("tetrahedra of ten nodes do not have; split them")
+    return type(error)(f"{error} by {_SPLIT}") if refused else error
 
 
 def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import cells_of, nodes_of
+from ._arrays import curved_cells_of, nodes_of
 from ._fields import Field
 from ._grid import Grid, reference_grid
 from ._mesh import Mesh, joined_cells
@@ -142,15 +142,22 @@ def to_pyvista(value: Any, deformed: Any = None) -> Any:
                                   origin=grid.origin, direction_matrix=np.array(grid.direction))
         image.point_data[value.name] = value.array.reshape(np.prod(grid.shape), -1).squeeze()
         return image
-    points, tets, hexes = _parts(value)
+    points, kinds = _parts(value)
     place = points if deformed is None else nodes_of(deformed, "deformed", len(points))
-    cells = {pyvista.CellType.TETRA: tets, pyvista.CellType.HEXAHEDRON: hexes}
-    return pyvista.UnstructuredGrid({kind: part for kind, part in cells.items() if len(part)}, place)
+    types = {"tetra": pyvista.CellType.TETRA, "tetra10": pyvista.CellType.QUADRATIC_TETRA,
+             "hexahedron": pyvista.CellType.HEXAHEDRON}
+    return pyvista.UnstructuredGrid({types[kind]: part for kind, part in kinds.items()}, place)
 
 
-def _parts(mesh: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _parts(mesh: Any) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Nodes, and the cells of each kind by its name in meshio, which has VTK's order of nodes."""
     points = nodes_of(mesh[0], "nodes")
-    return (points, *cells_of(mesh[1], "cells", len(points)))
+    tets, hexes, mids = curved_cells_of(mesh[1], "cells", len(points))
+    curved = (mids >= 0).any(axis=1) if len(mids) else np.zeros(len(tets), bool)
+    kinds = {"tetra": tets[~curved], "hexahedron": hexes}
+    if curved.any():
+        kinds["tetra10"] = np.hstack([tets, mids])[curved]
+    return points, {kind: part for kind, part in kinds.items() if len(part)}
 
 
 def to_meshio(mesh: Any, **data: Any) -> Any:
@@ -162,13 +169,13 @@ def to_meshio(mesh: Any, **data: Any) -> Any:
         meshio is not installed.
     """
     meshio = package("meshio", "to_meshio", "meshio")
-    points, tets, hexes = _parts(mesh)
-    cells = [(kind, part) for kind, part in (("tetra", tets), ("hexahedron", hexes)) if len(part)]
-    return meshio.Mesh(points, cells, **data)
+    points, kinds = _parts(mesh)
+    return meshio.Mesh(points, list(kinds.items()), **data)
 
 
 def mesh_from(mesh: Any) -> Mesh:
-    """The tetrahedra and hexahedra of a `meshio.Mesh` or an `UnstructuredGrid` of PyVista.
+    """The tetrahedra, of four nodes and then of ten, and hexahedra of a `meshio.Mesh` or an
+    `UnstructuredGrid` of PyVista.
 
     Raises
     ------
@@ -183,18 +190,22 @@ def mesh_from(mesh: Any) -> Mesh:
     if not hasattr(mesh, "cells_dict"):
         raise ValueError("mesh: expected a mesh of meshio or an UnstructuredGrid of PyVista, got "
                          f"{type(mesh).__name__}")
-    kinds = {10: "tetra", 12: "hexahedron"}  # numbers of VTK
+    kinds = {10: "tetra", 12: "hexahedron", 24: "tetra10"}  # numbers of VTK
     blocks: dict[Any, Any] = {}
     for kind, part in mesh.cells_dict.items():
         blocks[kinds.get(kind, kind)] = part
-    flat = {"vertex", "line", "triangle", "quad", 1, 3, 5, 9}
+    flat = {"vertex", "line", "triangle", "quad", "line3", "triangle6", 1, 3, 5, 9, 21, 22}
     others = [str(kind) for kind in blocks if kind not in kinds.values() and kind not in flat]
     if others:
         raise ValueError(
-            f"mesh: expected linear tetrahedra and hexahedra, found cells of {', '.join(others)}"
+            "mesh: expected tetrahedra of four or ten nodes and hexahedra of eight, found cells of "
+            f"{', '.join(others)}"
         )
     points = nodes_of(mesh.points, "mesh")
-    parts = (np.reshape(blocks.get("tetra", ()), (-1, 4)).astype(np.int32),
-             np.reshape(blocks.get("hexahedron", ()), (-1, 8)).astype(np.int32))
-    cells_of(parts, "mesh", len(points))
-    return Mesh(points, joined_cells(*parts))
+    parts = {name: np.reshape(blocks.get(name, ()), (-1, count)).astype(np.int32)
+             for name, count in (("tetra", 4), ("tetra10", 10), ("hexahedron", 8))}
+    tets, ten = parts["tetra"], parts["tetra10"]
+    if len(ten):
+        tets = np.vstack([np.pad(tets, ((0, 0), (0, 6)), constant_values=-1), ten])
+    return Mesh(points, joined_cells(*curved_cells_of((tets, parts["hexahedron"]), "mesh",
+                                                      len(points))))

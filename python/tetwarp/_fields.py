@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, maker_of, nodes_of, number_of, points_of
+from ._arrays import curved_cells_of, maker_of, nodes_of, number_of, points_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._result import WarpResult
@@ -93,10 +94,11 @@ def displacement_field(
     Parameters
     ----------
     rest, deformed : (n, 3) node positions before and after [world]
-    cells : (m, 4), (m, 8), or a pair of both
+    cells : (m, 4) or (m, 10), (k, 8), or a pair of both, as of Warper
     reference : Grid, or something that has one; or `shape` (z, y, x) with the keywords of Grid
     convention : ``"resampling"``: from the voxel of the deformed image to the rest position, as
-        image resamplers take it; ``"modeling"``: from the voxel at rest to the deformed position
+        image resamplers take it; ``"modeling"``: from the voxel at rest to the deformed position,
+        not of tetrahedra of ten nodes
     options : backend, device, threads, as of Warper
 
     Returns
@@ -188,7 +190,8 @@ def rasterize(
     Parameters
     ----------
     points : (n, 3) node positions [world]
-    cells : (m, 4), (m, 8), or a pair of both, numbered tetrahedra first
+    cells : (m, 4) or (m, 10), (k, 8), or a pair of both, numbered tetrahedra first; faces of
+        tetrahedra of ten nodes count as straight
     reference, shape, spacing, origin, direction, affine : the grid, as of displacement_field()
     options : backend, device, threads, as of Warper
 
@@ -226,7 +229,7 @@ def transform_points(
     ----------
     points : (k, 3), in the rest mesh, or with `inverse` in the deformed one [world]
     rest, deformed : (n, 3) node positions before and after [world]
-    cells : (m, 4), (m, 8), or a pair of both, numbered tetrahedra first
+    cells : (m, 4) or (m, 10), (k, 8), or a pair of both, numbered tetrahedra first
     inverse : False: from rest to deformed; True: back
     default_value : of all three numbers of points that no cell holds
     reference : grid whose voxels set the rounding; None: at most
@@ -236,6 +239,12 @@ def transform_points(
     Returns
     -------
     (k, 3) float64, or a pair with the owners; arrays of the library of `points`
+
+    Warns
+    -----
+    RuntimeWarning
+        how many points move with straight tetrahedra, as the curved map of their tetrahedron of ten
+        nodes has no inverse there.
 
     Raises
     ------
@@ -249,9 +258,12 @@ def transform_points(
     where = points_of(points, "points")
     start = nodes_of(rest, "rest")
     end = nodes_of(deformed, "deformed", len(start))
-    tets, hexes = cells_of(cells, "cells", len(start))
+    parts = curved_cells_of(cells, "cells", len(start))
     grid = None if reference is None else reference_grid(reference)._core()
-    moved, owners = _core.map_points(where, grid, start, tets, hexes, end, inverse)
+    moved, owners, straightened = _core.map_points(where, grid, start, *parts, end, inverse)
+    if straightened:
+        warnings.warn(f"{straightened} of {len(where)} points move with straight tetrahedra, as the "
+                      "curved map of theirs has no inverse there", RuntimeWarning, stacklevel=2)
     moved[owners < 0] = number_of(default_value, "default_value")
     make = maker_of(points)
     return (make(moved), make(owners)) if return_owners else make(moved)

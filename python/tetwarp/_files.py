@@ -9,11 +9,11 @@ from typing import Any, Iterator, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, integer_of, nodes_of, number_of, triangles_of
+from ._arrays import curved_cells_of, integer_of, nodes_of, number_of, triangles_of
 from ._contact import ContactProblem
 from ._fields import Field
 from ._grid import Grid, grid_from_core
-from ._mesh import Mesh, Surface, joined_cells
+from ._mesh import Mesh, Surface, joined_cells, split_ten_nodes
 from ._packages import MeshioFile, check_default, is_lacking, read_image, read_surface
 from ._result import WarpResult
 from ._volume import Volume
@@ -22,7 +22,8 @@ _ITK_FIELDS = ("tetwarp_displacement", "tetwarp_forward")
 
 
 class MeshFile:
-    """A mesh file and its steps, which are read when they are asked for.
+    """A mesh file and its steps, which are read when they are asked for. Tetrahedra of ten nodes stay
+    what they are, or are split_ten_nodes() with ``ten_nodes="split"``.
 
     mesh : the Mesh at rest
     times : one per step
@@ -38,17 +39,22 @@ class MeshFile:
     (MeshFile(4 nodes, 1 cells, 1 steps), 1.0)
     """
 
-    def __init__(self, path: Any, *, rest_step: int = 0, axes: str = "ras") -> None:
+    def __init__(
+        self, path: Any, *, rest_step: int = 0, axes: str = "ras", ten_nodes: str = "curved"
+    ) -> None:
         name, step = os.fspath(path), integer_of(rest_step, "rest_step")
+        if ten_nodes not in ("curved", "split"):
+            raise ValueError(f"ten_nodes: expected curved or split, got {ten_nodes!r}")
         self._file: Any
         try:
-            self._file = _core.MeshFile(name, step, axes)
+            self._file = _core.MeshFile(name, step, axes, ten_nodes == "curved")
         except _core.IoError as error:
             if not is_lacking(error):
                 raise
             self._file = MeshioFile(name, step, axes, error)
-        points, tets, hexes = self._file.mesh()
-        self.mesh = Mesh(points, joined_cells(tets, hexes))
+        points, *parts = self._file.mesh()
+        cells = joined_cells(*parts)
+        self.mesh = Mesh(points, split_ten_nodes(cells) if ten_nodes == "split" else cells)
         self.times: list[float] = list(self._file.times)
         self.not_read: list[str] = list(self._file.not_read)
 
@@ -98,7 +104,8 @@ def read_header(path: Any) -> VolumeHeader:
 
 
 def read(
-    path: Any, *, array: str = "", step: int = 0, axes: str = "ras", labels: bool = False
+    path: Any, *, array: str = "", step: int = 0, axes: str = "ras", labels: bool = False,
+    ten_nodes: str = "curved",
 ) -> Any:
     """Reads a file, by its content.
 
@@ -111,6 +118,8 @@ def read(
     axes : ``"ras"`` or ``"lps"``, of the components of images and of the nodes of meshes that are
         not VTKHDF
     labels : floats hold labels: they are read as int32, other numbers are an error
+    ten_nodes : ``"curved"``: tetrahedra of ten nodes stay what they are, cells of shape (m, 10);
+        ``"split"``: they become eight straight ones, see split_ten_nodes()
 
     Returns
     -------
@@ -130,14 +139,14 @@ def read(
     """
     name = os.fspath(path)
     if _core.has_mesh_extension(name):
-        return MeshFile(name, axes=axes)
+        return MeshFile(name, axes=axes, ten_nodes=ten_nodes)
     is_surface = _core.is_surface_file(name)
     try:
         if is_surface:
             return Surface(*_core.read_surface(name))
         kind = _core.kind_of(name)
         if kind == "mesh":
-            return MeshFile(name)
+            return MeshFile(name, ten_nodes=ten_nodes)
         if kind == "contact problem":
             return ContactProblem(**_core.read_contact_problem(name))
         samples, grid, read_name, nifti = _core.read_volume(
@@ -215,7 +224,7 @@ def _write_volumes(
 
 def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Sequence[float] | None) -> None:
     points = nodes_of(mesh.points, "points")
-    tets, hexes = cells_of(mesh.cells, "cells", len(points))
+    parts = curved_cells_of(mesh.cells, "cells", len(points))
     steps = [] if deformed is None else list(deformed)
     moved = [nodes_of(step, f"deformed[{n}]", len(points)) for n, step in enumerate(steps)]
     if times is None:
@@ -224,7 +233,7 @@ def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Sequence[float] | N
     if len(times) != len(moved):
         raise ValueError(f"times: expected {len(moved)}, one per step, got {len(times)}")
     _core.write_mesh(
-        path, points, tets, hexes, [step - points for step in moved],
+        path, points, *parts, [step - points for step in moved],
         [number_of(t, "times") for t in times],
     )
 

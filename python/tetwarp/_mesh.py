@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of, integer_of, nodes_of, number_of, vector_of, word_of
+from ._arrays import curved_cells_of, integer_of, nodes_of, number_of, vector_of, word_of
 from ._volume import volume_of
 
-Cells = Any  # (m, 4), (m, 8), or a pair of both
+Cells = Any  # (m, 4) or (m, 10), (k, 8), or a pair of both
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 
@@ -19,7 +19,9 @@ class Mesh(NamedTuple):
     """Nodes and cells; ``points, cells = mesh`` unpacks it.
 
     points : (n, 3) float64, x y z [world]
-    cells : (m, 4) tetrahedra or (m, 8) hexahedra in VTK's order, int32; a pair where there are both
+    cells : (m, 4) tetrahedra or (k, 8) hexahedra in VTK's order, int32; a pair where there are
+        both. Where a tetrahedron has ten nodes, all have (m, 10): four corners, then the nodes on
+        the edges 0 1, 1 2, 2 0, 0 3, 1 3 and 2 3; -1 for these where it has four
     """
 
     points: np.ndarray
@@ -50,8 +52,10 @@ class Surface(NamedTuple):
         return f"Surface({len(self.points)} points, {len(self.triangles)} triangles)"
 
 
-def joined_cells(tets: np.ndarray, hexes: np.ndarray) -> Cells:
-    """Cells as a Mesh has them."""
+def joined_cells(tets: np.ndarray, hexes: np.ndarray, mids: np.ndarray) -> Cells:
+    """Cells as a Mesh has them, from what curved_cells_of() returns."""
+    if len(mids):
+        tets = np.hstack([tets, mids])
     if len(hexes) == 0:
         return tets
     return hexes if len(tets) == 0 else (tets, hexes)
@@ -110,7 +114,7 @@ def deform(
     Parameters
     ----------
     points : (n, 3), nodes at rest [world]
-    cells : (m, 4), (m, 8), or a pair of both
+    cells : (m, 4) or (m, 10), (k, 8), or a pair of both
     kind : ``"twist"``, ``"bend"``, ``"swim"``, ``"random"``, ``"rotate"`` or ``"translate"``
     amount : quarter turns for twist, bend and rotate; relative to the mesh's box for swim and
         random
@@ -128,7 +132,7 @@ def deform(
     array([1., 0., 0.])
     """
     nodes = nodes_of(points, "points")
-    tets, hexes = cells_of(cells, "cells", len(nodes))
+    tets, hexes, _ = curved_cells_of(cells, "cells", len(nodes))
     if axis not in _AXES:
         raise ValueError(f"axis: expected x, y or z, got {axis!r}")
     if not 0 <= integer_of(seed, "seed") < 2**64:
@@ -140,14 +144,32 @@ def deform(
 
 
 def boundary_surface(points: Any, cells: Cells) -> Surface:
-    """The triangles that only one tetrahedron of a mesh has.
+    """The triangles that only one tetrahedron of a mesh has; tetrahedra of ten nodes are split.
 
     >>> mesh = lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=1)
     >>> boundary_surface(*mesh)
     Surface(8 points, 12 triangles)
     """
     nodes = nodes_of(points, "points")
-    return Surface(*_core.boundary_surface(nodes, *cells_of(cells, "cells", len(nodes))))
+    tets, hexes, mids = curved_cells_of(cells, "cells", len(nodes))
+    return Surface(*_core.boundary_surface(nodes, _core.split_ten_nodes(tets, mids), hexes))
+
+
+def split_ten_nodes(cells: Cells) -> Cells:
+    """The cells with eight straight tetrahedra between its nodes in place of every tetrahedron of ten
+    nodes: for what curved ones are refused. The map changes by at most a quarter of the sum of the
+    distances of the six nodes from the middles of their edges.
+
+    Parameters
+    ----------
+    cells : (m, 4) or (m, 10), (k, 8), or a pair of both
+
+    >>> split_ten_nodes([range(10)])[:2]
+    array([[0, 4, 6, 7],
+           [4, 1, 5, 8]], dtype=int32)
+    """
+    tets, hexes, mids = curved_cells_of(cells, "cells", 2**31 - 1)
+    return joined_cells(_core.split_ten_nodes(tets, mids), hexes, mids[:0])
 
 
 def isosurface(

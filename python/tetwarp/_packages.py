@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import cells_of
+from ._arrays import curved_cells_of
 from ._bridges import mesh_from
 from ._dicom import read_dicom
 from ._grid import Grid
@@ -67,10 +67,10 @@ class MeshioFile:
         self.times = [] if self._shift is None else [0.0]
         self.not_read = [name for name in names if name != "displacement"]
 
-    def mesh(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Nodes at rest, tetrahedra, hexahedra."""
+    def mesh(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Nodes at rest, corners of tetrahedra, hexahedra, nodes on edges of tetrahedra."""
         points, cells = self._mesh
-        return points * self._turn, *cells_of(cells, "cells", len(points))
+        return points * self._turn, *curved_cells_of(cells, "cells", len(points))
 
     def read_step(self, step: int) -> np.ndarray:
         """Positions of the nodes."""

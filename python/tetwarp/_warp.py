@@ -9,8 +9,8 @@ import numpy as np
 
 from . import _core
 from ._arrays import (
+    check_cells,
     check_finite,
-    check_indices,
     given_cells_of,
     integer_of,
     maker_of,
@@ -19,6 +19,7 @@ from ._arrays import (
     pair_of,
     points_of,
     renamed,
+    with_remedy,
     word_of,
 )
 from ._device import Device, on_device, type_of
@@ -85,7 +86,10 @@ class Warper:
         float32 or float64, of NumPy or by DLPack; or a list of these on one grid. Arrays of
         PyTorch and CuPy in the memory of a CUDA device stay there
     rest : (n, 3) node positions at rest, x y z [world]
-    cells : (m, 4) tetrahedra, (m, 8) hexahedra, or a pair of both; integers
+    cells : (m, 4) tetrahedra, or (m, 10) with nodes on their edges, see Mesh, (k, 8) hexahedra, or a
+        pair of both; integers. Tetrahedra of ten nodes are mapped by quadratic shape functions. They
+        give values as they are: no antialias, intensity, quantity, label_rule and forward field,
+        for which split_ten_nodes() cuts them
     spacing, origin, direction, affine : of the grid of arrays, see Grid
     interpolator : ``"linear"``, ``"nearest"``, ``"cubic"``, ``"bspline"``, ``"lanczos"`` or
         ``"labels"`` (64-bit integers: ``"nearest"`` and ``"labels"`` only)
@@ -190,14 +194,13 @@ class Warper:
             )
         except (TypeError, ValueError) as error:  # the library has other names for arguments
             check_finite(points, "rest")
-            for part in corners:
-                check_indices(part, "cells", len(points))
+            check_cells(corners, "cells", len(points))
             for name, word in (("interpolator", interpolator), ("label_rule", label_rule),
                                ("overshoot", overshoot),
                                ("intensity", intensity), ("outside", outside),
                                ("backend", backend)):
                 word_of(word, name)
-            raise renamed(error, _RENAMED) from None
+            raise with_remedy(renamed(error, _RENAMED)) from None
         self._is_source_grid = self._grid == grid
 
     @property
@@ -256,12 +259,12 @@ class Warper:
         stream = 0 if self._device is None else self._device.stream
         try:
             report = warper.step(positions, arrays, extras, False, stream, progress)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError) as error:
             if isinstance(positions, np.ndarray):
                 check_finite(positions, "deformed")
             if progress is not None and not callable(progress):
                 raise ValueError(f"progress: expected a function, got {progress!r}") from None
-            raise
+            raise with_remedy(error) from None
         if out is None and self._device is not None:
             volumes = tuple(arrays)
         elif out is None:
@@ -351,7 +354,7 @@ def warp(
     volume : Volume, or samples of shape (z, y, x) or (z, y, x, c), of 8- to 64-bit integers,
         float32 or float64; or a list of these on one grid
     rest, deformed : (n, 3) node positions before and after, x y z [world]
-    cells : (m, 4) tetrahedra, (m, 8) hexahedra, or a pair of both; integers
+    cells : (m, 4) or (m, 10) tetrahedra, (k, 8) hexahedra, or a pair of both; integers
     spacing, origin, direction, affine : of the grid of arrays, see Grid; default 1, 0, unit
     interpolator : ``"linear"``, ``"nearest"``, ``"cubic"``, ``"bspline"``, ``"lanczos"`` or
         ``"labels"``

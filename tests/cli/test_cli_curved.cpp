@@ -100,8 +100,8 @@ TEST_F(CliCurved, WarpsAreThoseOfTheLibrary) {
 }
 
 TEST_F(CliCurved, RefusesInOneLineWhatCurvesDoNotGive) {
-  for (const Words& more : {Words{"--antialias"}, Words{"--intensity", "density"},
-                            Words{"--outputs", "forward"}, Words{"--memory", "1M"}}) {
+  for (const Words& more :
+       {Words{"--antialias"}, Words{"--intensity", "density"}, Words{"--outputs", "forward"}}) {
     Words words{"warp", "volume.vtkhdf", "ten.vtkhdf", "-o", "out.vtkhdf"};
     words.insert(words.end(), more.begin(), more.end());
     const CommandResult result = run(words);
@@ -149,6 +149,209 @@ TEST_F(CliCurved, ImportKeepsTheCells) {
   const MeshReader reader(scene / "a.vtkhdf", {.import = {.keeps_curved = true}});
   EXPECT_EQ(reader.mid_nodes(), (std::vector<MidNodes>{{4, 5, 6, 7, 8, 9}}));
   EXPECT_EQ(reader.mesh().rest_positions[4], (Point3{1, 0, 0.25}));
+}
+
+/// A quadratic motion of tetrahedra of ten nodes within 24^3 voxels: one map of all cells.
+class CliQuadratic : public ::testing::Test {
+ protected:
+  CliQuadratic() : mesh(with_mid_nodes(scenes::lattice({3, 3, 3}, {2, 2, 2}, {20, 20, 20}))) {
+    const Volume volume = scenes::wavy_volume(scenes::unit_grid(24, 24, 24), PixelType::float32);
+    write_volumes(folder / "volume.vtkhdf", {&volume});
+    std::vector<Point3> displacement;
+    for (const Point3& x : mesh.mesh.rest_positions) {
+      deformed.push_back(quadratic(x));
+      const Point3& y = deformed.back();
+      displacement.push_back({y[0] - x[0], y[1] - x[1], y[2] - x[2]});
+    }
+    write_mesh(folder / "ten.vtkhdf", mesh, {displacement});
+  }
+
+  CommandResult run(const Words& words) const {
+    const CommandResult result = run_command(folder, words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result;
+  }
+
+  /// Where the field of a file takes the voxels, and which ones it moves.
+  struct Positions {
+    std::vector<Point3> voxels, places;
+    std::size_t moved = 0;
+  };
+  Positions field_of(const std::string& name) const {
+    const Volume field = read_volume(folder / name);
+    const auto numbers = field.samples<float>();
+    Positions result;
+    for (std::size_t v = 0; v < 24 * 24 * 24; ++v) {
+      const Point3 x{static_cast<double>(v % 24), static_cast<double>(v / 24 % 24),
+                     static_cast<double>(v / 24 / 24)};
+      Point3 y = x;
+      for (std::size_t axis = 0; axis < 3; ++axis) y[axis] += numbers[3 * v + axis];
+      result.voxels.push_back(x);
+      result.places.push_back(y);
+      result.moved += y != x;
+    }
+    return result;
+  }
+
+  static double distance(const Point3& a, const Point3& b) {
+    return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+  }
+
+  const TemporaryFolder folder;
+  CurvedMesh mesh;
+  std::vector<Point3> deformed;
+};
+
+TEST_F(CliQuadratic, FieldsOfComposeAreTheClosedForm) {
+  run({"compose", "ten.vtkhdf", "-o", "field.vtkhdf", "--like", "volume.vtkhdf"});
+  run({"compose", "ten.vtkhdf", "-o", "split.vtkhdf", "--like", "volume.vtkhdf", "--ten-nodes",
+       "split"});
+  run({"compose", "ten.vtkhdf^-1", "ten.vtkhdf", "-o", "none.vtkhdf", "--like", "volume.vtkhdf"});
+
+  const Positions curved = field_of("field.vtkhdf"), split = field_of("split.vtkhdf");
+  double worst = 0, off = 0;
+  for (std::size_t v = 0; v < curved.voxels.size(); ++v) {
+    const Point3& x = curved.voxels[v];
+    if (curved.places[v] != x) worst = std::max(worst, distance(quadratic(curved.places[v]), x));
+    if (split.places[v] != x) off = std::max(off, distance(quadratic(split.places[v]), x));
+  }
+  EXPECT_LT(worst, 1e-5);  // of float32
+  EXPECT_GT(off, 1e-2);
+  EXPECT_GT(curved.moved, 3000U);
+  const Positions none = field_of("none.vtkhdf");
+  for (std::size_t v = 0; v < none.voxels.size(); ++v) {
+    const auto [low, high] = std::ranges::minmax(curved.places[v]);
+    if (curved.places[v] == curved.voxels[v] || low < 4 || high > 18) continue;  // near the hulls
+    ASSERT_LT(distance(none.places[v], none.voxels[v]), 1e-6) << v;
+  }
+}
+
+TEST_F(CliQuadratic, InvertExchangesPositionsAndKeepsTheCurves) {
+  const CommandResult result = run({"invert", "ten.vtkhdf", "-o", "back.vtkhdf"});
+  run({"invert", "back.vtkhdf", "-o", "again.vtkhdf", "--quiet"});
+
+  const MeshReader back(folder / "back.vtkhdf", {.import = {.keeps_curved = true}});
+  const MeshReader again(folder / "again.vtkhdf", {.import = {.keeps_curved = true}});
+  EXPECT_EQ(back.mesh().rest_positions, deformed);
+  EXPECT_EQ(back.mid_nodes(), mesh.mid_nodes);
+  EXPECT_EQ(back.read_step(0), mesh.mesh.rest_positions);
+  EXPECT_EQ(again.mesh().rest_positions, mesh.mesh.rest_positions);
+  EXPECT_EQ(result.err, "");
+  const std::string marker = " points within ";
+  const std::size_t at = result.out.find(marker);
+  ASSERT_NE(at, std::string::npos) << result.out;
+  EXPECT_LT(std::stod(result.out.substr(at + marker.size())), 1e-9) << result.out;
+  run({"compose", "ten.vtkhdf", "-o", "a.vtkhdf", "--like", "volume.vtkhdf"});
+  run({"compose", "back.vtkhdf^-1", "-o", "b.vtkhdf", "--like", "volume.vtkhdf"});
+  EXPECT_TRUE(read_volume(folder / "a.vtkhdf").data == read_volume(folder / "b.vtkhdf").data);
+}
+
+/// Cells bent in their own ways: places between a straight and a curved face come back by the
+/// neighbor, and those of folded cells not at all.
+TEST_F(CliCurved, InvertTellsWhatDoesNotComeBack) {
+  const CommandResult gentle = run({"invert", "ten.vtkhdf", "-o", "back.vtkhdf", "--step", "1"});
+  EXPECT_EQ(gentle.exit_code, 0) << gentle.err;
+  EXPECT_EQ(gentle.err, "");
+  EXPECT_NE(gentle.out.find(" at curved faces within "), std::string::npos) << gentle.out;
+
+  std::vector<Point3> wild = shaken(mesh.mesh.rest_positions, 12, 5);
+  for (std::size_t n = 0; n < wild.size(); ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      wild[n][axis] = n < 8 ? 0 : wild[n][axis] - mesh.mesh.rest_positions[n][axis];
+    }
+  }
+  write_mesh(scene / "wild.vtkhdf", mesh, {wild});
+  const CommandResult folded = run({"invert", "wild.vtkhdf", "-o", "wild_back.vtkhdf"});
+  EXPECT_EQ(folded.exit_code, 0) << folded.err;
+  EXPECT_NE(folded.err.find(" points move with straight tetrahedra"), std::string::npos)
+      << folded.err;
+}
+
+/// Tetrahedra of ten nodes and hexahedra in one file, whose points are the deformed ones.
+TEST_F(CliCurved, WarpsBesideHexahedraWithRestPositionsOfAnotherFile) {
+  const Volume source = read_volume(scene / "volume.vtkhdf");
+  CurvedMesh both = mesh;
+  std::vector<Point3> rest = mesh.mesh.rest_positions, now = steps[1];
+  for (Point3& x : now) x[0] -= 9;
+  const std::vector<Point3> now_of_tets = now;
+  const auto first = static_cast<std::int32_t>(rest.size());
+  for (std::size_t node = 0; node < 8; ++node) {
+    const std::size_t corner = std::array<std::size_t, 8>{0, 1, 3, 2, 4, 5, 7, 6}[node];
+    rest.push_back(box_mesh().rest_positions[corner]);
+    now.push_back({rest.back()[0], rest.back()[1] + (node < 4 ? 2 : 3), rest.back()[2]});
+  }
+  both.mesh.hexes = {
+      {first, first + 1, first + 2, first + 3, first + 4, first + 5, first + 6, first + 7}};
+  both.mesh.rest_positions = rest;
+  write_mesh(scene / "rest.vtkhdf", both);
+  CurvedMesh moved = both;
+  moved.mesh.rest_positions = now;
+  write_mesh(scene / "now.vtkhdf", moved);
+
+  const CommandResult result = run({"warp", "volume.vtkhdf", "now.vtkhdf", "--rest", "rest.vtkhdf",
+                                    "-o", "out.vtkhdf", "--outputs", "tet"});
+
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Volume found = read_volume(scene / "out.vtkhdf", "density");
+  const Volume owners = read_volume(scene / "out.vtkhdf", "tetwarp_tet");
+  Warper tets(std::array{VolumeView(source)}, mesh);
+  const Volume of_tets = tets.step(now_of_tets);
+  const Volume of_hex = warp(source, Mesh{rest, {}, both.mesh.hexes}, now).volume;
+  std::array<int, 2> counts{};
+  for (std::size_t v = 0; v < owners.samples<std::int32_t>().size(); ++v) {
+    const std::int32_t owner = owners.samples<std::int32_t>()[v];
+    if (owner < 0) continue;
+    const bool is_hex = owner == 5;
+    ++counts[is_hex ? 1 : 0];
+    ASSERT_EQ(found.samples<float>()[v], (is_hex ? of_hex : of_tets).samples<float>()[v]) << v;
+  }
+  EXPECT_GT(counts[0], 100);
+  EXPECT_GT(counts[1], 50);
+}
+
+TEST_F(CliCurved, BatchesTakeTenNodesAsADefaultThatJobsOverride) {
+  write_text(scene / "jobs.json",
+             R"({"jobs": [{"volume": "volume.vtkhdf", "mesh": "ten.vtkhdf", "output": "a.vtkhdf"},
+ {"volume": "volume.vtkhdf", "mesh": "ten.vtkhdf", "output": "b.vtkhdf", "ten-nodes": "curved"}]})");
+
+  const CommandResult result =
+      run({"warp", "--batch", "jobs.json", "--ten-nodes", "split", "--steps", "1"});
+
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Volume source = read_volume(scene / "volume.vtkhdf");
+  Warper curved(std::array{VolumeView(source)}, mesh);
+  EXPECT_TRUE(read_volume(scene / "a.vtkhdf").data ==
+              warp(source, split_curved(mesh), steps[1]).volume.data);
+  EXPECT_TRUE(read_volume(scene / "b.vtkhdf").data == curved.step(steps[1]).data);
+}
+
+/// Both source and output, each of 13 MB, are read and written in blocks.
+TEST_F(CliCurved, BlocksHaveTheBitsOfTheWhole) {
+  if (has_address_sanitizer) GTEST_SKIP() << "the address sanitizer takes more memory";
+  Grid grid = read_volume_header(scene / "volume.vtkhdf").grid;
+  grid.spacing = {24.0 / 160, 20.0 / 150, 16.0 / 140};
+  grid.dims = {160, 150, 140};
+  const Volume volume = scenes::wavy_volume(grid, PixelType::float32);
+  write_volumes(scene / "large.vtkhdf", {&volume});
+  const Words words{"warp", "large.vtkhdf", "ten.vtkhdf", "--steps", "1", "--threads", "2", "-o"};
+  Words whole = words, blocks = words;
+  whole.insert(whole.end(), {"whole.vtkhdf", "--report", "whole.json"});
+  blocks.insert(blocks.end(), {"blocks.vtkhdf", "--report", "blocks.json", "--memory", "58M"});
+  Words plan = blocks;
+  plan.push_back("--dry-run");
+
+  const CommandResult planned = run(plan), in_memory = run(whole), in_blocks = run(blocks);
+
+  EXPECT_NE(planned.out.find(" blocks of up to "), std::string::npos) << planned.out << planned.err;
+  ASSERT_EQ(in_memory.exit_code, 0) << in_memory.err;
+  ASSERT_EQ(in_blocks.exit_code, 0) << in_blocks.err;
+  EXPECT_LE(in_blocks.peak_memory, 1.02 * 58 * (1 << 20));
+  EXPECT_TRUE(read_volume(scene / "blocks.vtkhdf").data ==
+              read_volume(scene / "whole.vtkhdf").data);
+  const auto report = [&](const char* name) {
+    return nlohmann::json::parse(text_of(scene / name)).at("counts");
+  };
+  EXPECT_EQ(report("blocks.json").at("covered"), report("whole.json").at("covered"));
 }
 }  // namespace
 }  // namespace tetwarp::test

@@ -2,9 +2,13 @@
 /// Ctrl-C in every phase: a line at once, the end within a second, no temporary file; what a killed
 /// run leaves; the progress bar.
 #include <gtest/gtest.h>
+#include <nifti1.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
@@ -12,6 +16,7 @@
 #include <tetwarp/make.hpp>
 #include <vector>
 
+#include "io/nifti/nifti_header.hpp"
 #include "tests/support/running_scene.hpp"
 
 namespace tetwarp::test {
@@ -79,6 +84,55 @@ TEST(Interrupt, LeavesNothingOfAnUnpackedImage) {
   EXPECT_EQ(ending.result.exit_code, 130);
   EXPECT_LT(ending.seconds, max_seconds);
   EXPECT_EQ(scene.names(), (Names{"large.nii.gz", "mesh.vtkhdf", "volume.vtkhdf"}));
+}
+
+/// 1.5 GB of zeros, as gzip files that follow each other.
+void write_large_image(const Scene& scene, const std::string& name) {
+  Volume small = make_volume(ramp_volume<float>().grid, PixelType::uint8);
+  small.grid.spacing = {24.0 / 1024, 20.0 / 1024, 16.0 / 1536};
+  write_nifti(scene / "small.nii", small);
+  std::string header = text_of(scene / "small.nii");
+  nifti_1_header fields{};
+  std::memcpy(&fields, header.data(), sizeof fields);
+  const std::array<short, 3> dims{1024, 1024, 1536};
+  std::ranges::copy(dims, fields.dim + 1);
+  std::memcpy(header.data(), &fields, sizeof fields);
+  header.resize(static_cast<std::size_t>(fields.vox_offset));
+  const std::string zeros(std::size_t{1} << 26, '\0');
+  const auto packed = [&](const std::string& bytes) {
+    NiftiStream(scene / "part.gz", "wb", true).write(bytes.data(), bytes.size());
+    return text_of(scene / "part.gz");
+  };
+  std::string image = packed(header);
+  const std::string part = packed(zeros);
+  for (int copy = 0; copy < 24; ++copy) image += part;
+  fs::remove(scene / "part.gz");
+  fs::remove(scene / "small.nii");
+  write_text(scene / name, image);
+}
+
+/// Unpacking it takes longer than the timer allows that ends a command without a report.
+TEST(Interrupt, EndsTheUnpackingOfALargeImageInTimeForTheReport) {
+  const Scene scene;
+  write_large_image(scene, "large.nii.gz");
+  write_text(
+      scene / "jobs.json",
+      R"({"jobs": [{"volume": "large.nii.gz", "mesh": "mesh.vtkhdf", "output": "out.nii.gz"}]})");
+  fs::create_directory(scene / "reports");
+  const Names before = scene.names();
+  const FolderWatch watch(scene);
+  RunningCommand command(scene, {"warp", "--batch", "jobs.json", "--steps", "3", "--memory", "70M",
+                                 "--threads", "1", "--report", "reports/batch.json"});
+  ASSERT_TRUE(watch.sees_new_file());
+
+  const Ending ending = end_by(SIGINT, command);
+
+  EXPECT_EQ(ending.result.exit_code, 130);
+  EXPECT_LT(ending.seconds, max_seconds);
+  EXPECT_EQ(scene.names(), before);
+  const auto report = nlohmann::json::parse(text_of(scene / "reports/batch.json"));
+  EXPECT_EQ(report["status"], "interrupted");
+  EXPECT_EQ(report["jobs"][0]["status"], "interrupted");
 }
 
 /// While a gzip field is unpacked, and while parts of the output are computed.

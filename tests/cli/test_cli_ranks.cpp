@@ -109,6 +109,17 @@ Volume write_large_scene(const Scene& scene) {
   return volume;
 }
 
+/// Each of three unpacks 130 x 70 x 66 voxels of four bytes, and the first one keeps as many.
+TEST_F(Ranks, CountTheTemporaryFilesOfAll) {
+  write_nifti(scene / "head.nii.gz", write_large_scene(scene));
+
+  const CommandResult planned =
+      run_three({"head.nii.gz", "mesh.vtkhdf", "-o", "out.nii.gz", "--steps", "2", "--dry-run"});
+
+  EXPECT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_NE(planned.out.find("9.2 MiB of disk"), std::string::npos) << planned.out;
+}
+
 TEST_F(Ranks, ShareBlocksOfAGzipImage) {
   write_nifti(scene / "head.nii.gz", write_large_scene(scene));
   const Names words{"head.nii.gz", "mesh.vtkhdf", "--steps", "2", "--filter", "cubic", "-o"};

@@ -14,6 +14,7 @@
 #include <tetwarp/blocks.hpp>
 
 #include "host/warp/hex_split.hpp"
+#include "tests/support/curved_scenes.hpp"
 #include "tests/support/each_backend.hpp"
 #include "tests/support/hex_scenes.hpp"
 #include "tests/support/message_of.hpp"
@@ -49,10 +50,12 @@ InBlocks run_blocks(const Volume& source,
                     const scenes::Scene& scene,
                     WarpOptions options,
                     const BlockLimits& limits,
-                    const std::vector<double>& range = {}) {
+                    const std::vector<double>& range = {},
+                    const std::vector<MidNodes>& mid_nodes = {}) {
   options.output_grid = scene.output_grid;
   InBlocks all;
-  all.plan = BlockPlanner(scene.source_grid, scene.mesh, options).plan(scene.deformed, limits);
+  BlockPlanner planner(scene.source_grid, scene.mesh, options, mid_nodes);
+  all.plan = planner.plan(scene.deformed, limits);
   Warped& whole = all.warped;
   whole.volume = make_volume(scene.output_grid, source.type, source.components);
   const auto voxels = static_cast<std::size_t>(scene.output_grid.voxel_count());
@@ -66,8 +69,8 @@ InBlocks run_blocks(const Volume& source,
     options.source_window = SourceWindow{block.source, {range}};
     all.window_voxels += block.source.voxel_count();
     options.region = block.output;
-    const BlockMesh part = block_mesh(scene.mesh, block);
-    Warper warper(std::span(&view, 1), part.mesh, options);
+    const BlockMesh part = block_mesh(scene.mesh, block, mid_nodes);
+    Warper warper(std::span(&view, 1), CurvedMesh{part.mesh, part.mid_nodes}, options);
     const Warped piece = run_step(warper, source, part.of(scene.deformed));
     whole.counts += piece.counts;
     const std::size_t row = static_cast<std::size_t>(block.output.end[0] - block.output.begin[0]);
@@ -136,6 +139,49 @@ TEST_P(Blocks, OfHexahedraAndOfMeansHaveTheBitsOfTheWhole) {
 
     EXPECT_TRUE(is_same(blocks.warped, run_warp(source, scene, GetParam(), options))) << shrink;
     EXPECT_GT(blocks.plan.blocks.size(), 1u);
+  }
+}
+
+/// Gently bent, so that windows are little larger than those of straight cells, and wildly, so that
+/// cells fold; beside hexahedra and tetrahedra of four nodes.
+TEST_P(Blocks, OfTenNodesHaveTheBitsOfTheWhole) {
+  const Grid grid = scenes::unit_grid(40, 36, 32);
+  CurvedMesh mesh = with_mid_nodes(scenes::lattice({5, 5, 4}, {1, 1, 1}, {38, 34, 22}));
+  mesh.mid_nodes[7] = mesh.mid_nodes[40] = no_mid_nodes;
+  const HexBox box = hex_box({2, 2, 1}, {1, 1, 22}, {38, 34, 31}, bent(1));
+  const auto first = static_cast<std::int32_t>(mesh.mesh.rest_positions.size());
+  for (auto hex : box.mesh.hexes) {
+    for (std::int32_t& node : hex) node += first;
+    mesh.mesh.hexes.push_back(hex);
+  }
+  std::vector<Point3>& rest = mesh.mesh.rest_positions;
+  rest.insert(rest.end(), box.mesh.rest_positions.begin(), box.mesh.rest_positions.end());
+  const Volume source = scenes::wavy_volume(grid, PixelType::int16);
+  const std::int64_t corners = 6 * 6 * 5;
+  for (const double bend : {0.3, 6.0}) {
+    scenes::Scene scene = {"curved", mesh.mesh, shaken(rest, bend, 7), grid, grid};
+    std::copy_n(rest.begin(), corners, scene.deformed.begin());
+    std::copy(box.deformed.begin(), box.deformed.end(), scene.deformed.begin() + first);
+    scene.mesh.rest_positions = shaken(rest, bend / 3, 8);
+    WarpOptions options{.filter = Filter::cubic, .outside = Outside::identity};
+    options.output_grid = grid;
+    options.backend = GetParam();
+    Warper warper(std::array{VolumeView(source)}, CurvedMesh{scene.mesh, mesh.mid_nodes}, options);
+    const Warped whole = run_step(warper, source, scene.deformed);
+
+    const InBlocks blocks = run_blocks(source, scene, options, small, {}, mesh.mid_nodes);
+    const InBlocks straight = run_blocks(source, scene, options, small);
+
+    EXPECT_TRUE(is_same(blocks.warped, whole)) << bend;
+    EXPECT_FALSE(is_same(blocks.warped, straight.warped)) << bend;
+    EXPECT_EQ(blocks.warped.counts.voxels_straightened, whole.counts.voxels_straightened);
+    EXPECT_EQ(whole.counts.voxels_straightened > 0, bend > 1);
+    EXPECT_GT(blocks.plan.blocks.size(), 8u);
+    if (bend < 1) {
+      EXPECT_LT(blocks.window_voxels, 1.5 * static_cast<double>(straight.window_voxels));
+    }
+    found("windows",
+          static_cast<double>(blocks.window_voxels) / static_cast<double>(straight.window_voxels));
   }
 }
 

@@ -71,6 +71,23 @@ TEST_P(MapPointsCurved, HaveTheBitsOfFourNodesWhereEdgesAreStraight) {
   }
 }
 
+/// One middle node goes 2^42 voxels away, and takes all points of its cells along.
+TEST_P(MapPointsCurved, FollowAMiddleNodeBeyondTheLimits) {
+  const CurvedMesh mesh = small_cubes();
+  std::vector<Point3> deformed = mesh.mesh.rest_positions;
+  const auto far = static_cast<std::size_t>(mesh.mid_nodes[0][0]);
+  deformed[far][0] += 0x1p42;
+  const Grid grid = scenes::unit_grid(13, 13, 13);
+
+  const Point3 corner = mesh.mesh.rest_positions[static_cast<std::size_t>(mesh.mesh.tets[0][0])];
+  const MappedPoints moved = map_points(mesh, deformed, {corner, mesh.mesh.rest_positions[far]},
+                                        {.grid = grid, .backend = GetParam()});
+
+  EXPECT_EQ(moved.points[0], corner);
+  EXPECT_NEAR(moved.points[1][0] / deformed[far][0], 1, 1e-9);
+  EXPECT_EQ(moved.straightened, 0);
+}
+
 /// Gently and wildly bent edges: of folded cells some points have no place.
 TEST_P(MapPointsCurved, AreTheReference) {
   if (GetParam() == Backend::reference) GTEST_SKIP() << "the reference is not compared with itself";

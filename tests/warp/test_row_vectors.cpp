@@ -7,11 +7,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <tetwarp/resample.hpp>
 
 #include "host/base/pixel_dispatch.hpp"
 #include "tests/support/hex_scenes.hpp"
@@ -214,6 +218,49 @@ TEST(RowVectors, RegionsHaveTheBitsOfOneVoxel) {
         {.components = 6, .reorientation = Quantity::tensor, .averages = true, .region = region});
     expect_bits_of_one_voxel(
         {.type = PixelType::uint8, .filter = Filter::labels, .region = region});
+  }
+}
+
+/// Eights of voxels that lie on a field's voxels, between them, beyond the field or in several of
+/// these ways: a voxel has the same bits whatever row and instruction set it is computed in.
+TEST(RowVectors, ChainsOfFieldsHaveTheBitsOfEveryRowAndInstructionSet) {
+  const Grid grid = scenes::unit_grid(23, 9, 7);
+  Grid turned = grid;
+  turned.origin = {16, -3.25, 1};  // all positions are exact: rows round to no other ones
+  turned.spacing = {0.5, 2, 1};
+  turned.direction = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  const auto field_on = [](const Grid& on, std::uint64_t seed) {
+    DisplacementField field{on, std::vector<float>(3 * static_cast<std::size_t>(on.voxel_count()))};
+    for (std::size_t n = 0; n < field.displacement.size(); ++n) {
+      const double x = scenes::uniform(seed, n);
+      field.displacement[n] = x < 0.9 ? 0.0f : static_cast<float>(std::floor(40 * x - 38)) / 4;
+      if (x > 0.999) field.displacement[n] = std::numeric_limits<float>::quiet_NaN();
+    }
+    return field;
+  };
+  const TransformChain chains[] = {{{field_on(grid, 1), field_on(grid, 2)}},
+                                   {{field_on(turned, 3), field_on(grid, 4), field_on(turned, 5)}}};
+  const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+  for (const TransformChain& chain : chains) {
+    const auto samples_of = [&](std::int64_t row) {
+      ResampleOptions options{.background = -9, .output_grid = grid, .threads = 1};
+      options.output_grid->dims[0] = row;
+      return resample(source, chain, options);
+    };
+    const Volume expected = samples_of(23);
+    for (const std::int64_t set : instruction_sets()) {
+      const OnlySet only(set);
+      for (std::int64_t row = 8; row <= 23; ++row) {
+        const Volume found = samples_of(row);
+        for (std::int64_t v = 0; v < found.grid.voxel_count(); ++v) {
+          const auto same = static_cast<std::size_t>(v / row * 23 + v % row);
+          ASSERT_TRUE(has_equal_bits(found.samples<float>()[static_cast<std::size_t>(v)],
+                                     expected.samples<float>()[same]))
+              << hwy::TargetName(set) << " row of " << row << ", voxel " << v;
+        }
+      }
+    }
+    EXPECT_NE(std::ranges::count(expected.samples<float>(), -9.0f), expected.grid.voxel_count());
   }
 }
 }  // namespace

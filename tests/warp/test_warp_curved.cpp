@@ -215,12 +215,10 @@ TEST_P(WarpCurved, TakesTheStraightMapWhereTheCurvedOneIsLostOrAddsNothing) {
   const Volume source = scenes::wavy_volume(grid, PixelType::float32);
   const std::size_t corners = 6 * 6 * 6;
   std::vector<Point3> deformed = shaken(mesh.mesh.rest_positions, 0.4, 41);
-  if (GetParam() != Backend::reference) {
-    for (std::size_t n = corners; n < deformed.size(); ++n) deformed[n] = {0x1p42, 0, 0};
-    const Warped lost = run(source, mesh, deformed);
-    EXPECT_TRUE(is_same(lost, run_straight(source, mesh, deformed)));
-    EXPECT_EQ(lost.counts.voxels_straightened, lost.counts.covered);
-  }
+  for (std::size_t n = corners; n < deformed.size(); ++n) deformed[n] = {0x1p42, 0, 0};
+  const Warped lost = run(source, mesh, deformed);
+  EXPECT_TRUE(is_same(lost, run_straight(source, mesh, deformed)));
+  EXPECT_EQ(lost.counts.voxels_straightened, lost.counts.covered);
   mesh.mesh.rest_positions = shaken(mesh.mesh.rest_positions, 0.4, 42);
   deformed = scenes::shifted(mesh.mesh.rest_positions, {2, -1, 3});
   const Warped moved = run(source, mesh, deformed);
@@ -291,8 +289,6 @@ TEST_P(WarpCurved, RefusesWhatItDoesNotMap) {
             "intensity density scales by affine maps" + end);
   EXPECT_EQ(refusal({.quantities = {Quantity::vector}}),
             "quantities of vectors and tensors turn by affine maps" + end);
-  EXPECT_EQ(refusal({.source_window = SourceWindow{{{0, 0, 0}, {24, 24, 24}}}}),
-            "a window of the source is found by affine maps" + end);
   EXPECT_EQ(message_of([&] {
               Warper warper(std::array{VolumeView(source)}, mesh, {.backend = GetParam()});
               std::vector<float> forward(3 * edge * edge * edge);

@@ -11,6 +11,7 @@
 
 #include "host/cli/common/ranks.hpp"
 #include "io/files/finished_file.hpp"
+#include "io/files/read_check.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -66,6 +67,7 @@ void install_interrupt_handlers() {
   is_terminal = isatty(STDERR_FILENO);
   // When a rank has printed an error and ended, mpirun ends the others by a signal.
   is_silent = launched_count() > 1;
+  set_read_check(stop_if_interrupted);
   install_handler(SIGINT, handle);
   install_handler(SIGTERM, handle);
   install_handler(SIGALRM, end_process);

@@ -4,10 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/ranks.hpp"
 #include "host/cli/job/memory_plan.hpp"
 #include "io/files/extension.hpp"
 #include "io/files/finished_file.hpp"
@@ -33,25 +37,27 @@ bool is_written_twice(const VolumePlan& plan, const WarpArguments& arguments, st
 
 /// temporary_disk() without steps of a series that can be resumed, whose files may be packed.
 double scratch_bytes(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
-  double bytes = is_written_twice(plan, arguments, blocks) ? output_bytes(plan, arguments) : 0;
-  if (blocks == 0) return bytes;
+  constexpr std::int64_t several = 2;  // the blocks of processes that share an output
+  const bool shares = shares_blocks(plan, arguments, launched_count());
+  if (shares) blocks = std::max(blocks, several);
+  // Each process takes an output of its own, or reads the blocks of one that the first one writes.
+  const double processes = launched_count();
+  const double writers = std::min(processes, static_cast<double>(plan.outputs.size()));
+  const double readers = shares ? processes : writers;
+  const double written =
+      is_written_twice(plan, arguments, blocks) ? writers * output_bytes(plan, arguments) : 0;
+  if (blocks == 0) return written;
+  double unpacked = 0;
   for (const ArrayHeader& array : plan.arrays) {
     const std::int64_t step = arguments.source_step.value_or(0);
-    bytes += VolumeReader(plan.path, array.name, step, plan.read).unpacked_bytes();
+    unpacked += VolumeReader(plan.path, array.name, step, plan.read).unpacked_bytes();
   }
-  for (const FieldReader& field : plan.fields) bytes += field.unpacked_bytes;
-  return bytes;
-}
-}  // namespace
-
-double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
-  return scratch_bytes(plan, arguments, blocks) +
-         (may_resume_within(plan, arguments) ? output_bytes(plan, arguments) : 0);
+  for (const FieldReader& field : plan.fields) unpacked += field.unpacked_bytes;
+  return written + readers * unpacked;
 }
 
-void check_room(VolumePlan& plan, const WarpArguments& arguments) {
-  // How many blocks there are is planned later, from the positions.
-  const double bytes = scratch_bytes(plan, arguments, plan.memory_limit > 0 ? 2 : 0);
+/// Refuses a job for whose temporary files, beside the outputs of a plan, there is no room.
+void check_room(VolumePlan& plan, const WarpArguments& arguments, double bytes) {
   if (bytes == 0 || !plan.refusal.empty()) return;
   const std::string& output = plan.outputs.front();
   const std::string folder =
@@ -64,6 +70,27 @@ void check_room(VolumePlan& plan, const WarpArguments& arguments) {
                      "free space, or name an output on another disk",
                      output, bytes_text(bytes), bytes_text(static_cast<double>(space.available)),
                      folder));
+}
+}  // namespace
+
+double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
+  return scratch_bytes(plan, arguments, blocks) +
+         (may_resume_within(plan, arguments) ? output_bytes(plan, arguments) : 0);
+}
+
+void check_room(std::span<VolumePlan> plans, const WarpArguments& arguments) {
+  // How many blocks there are is planned later, from the positions.
+  std::vector<std::pair<double, VolumePlan*>> all;
+  for (VolumePlan& plan : plans) {
+    all.emplace_back(scratch_bytes(plan, arguments, plan.memory_limit > 0 ? 2 : 0), &plan);
+  }
+  // At most so many volumes at a time: the largest ones.
+  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.first > b.first; });
+  const auto at_a_time =
+      std::min<std::size_t>(static_cast<std::size_t>(launched_count()), all.size());
+  double bytes = 0;
+  for (std::size_t n = 0; n < at_a_time; ++n) bytes += all[n].first;
+  check_room(*all.front().second, arguments, bytes);
 }
 
 }  // namespace tetwarp::cli

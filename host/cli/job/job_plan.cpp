@@ -211,7 +211,6 @@ void plan_outputs(VolumePlan& plan,
   plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && plan.steps.size() > 1 &&
                        leaves_time(backend, arguments);
   set_outputs(plan, output, arguments);
-  check_room(plan, arguments);
   const auto is_field = [](const ArrayHeader& array) { return nifti_array(array).is_itk_field; };
   if (has_nifti_name(output.string()) && itk_components(plan.written_grid) == 2 &&
       std::ranges::any_of(arrays_written(plan, arguments), is_field)) {
@@ -326,6 +325,7 @@ JobPlan plan_job(const WarpArguments& arguments) {
     plan.warnings.insert(plan.warnings.end(), planned.warnings.begin(), planned.warnings.end());
     plan.notes.insert(plan.notes.end(), planned.notes.begin(), planned.notes.end());
   }
+  check_room(plan.volumes, arguments);
   check_axes_turn(plan, arguments);
   check_outputs(plan, arguments);
   return plan;

@@ -93,6 +93,19 @@ double fixed_memory(const VolumePlan& plan,
   return bytes + outputs * cache + (arguments.compress > 0 ? buffer : 0);
 }
 
+double curve_memory(const MeshReader& mesh) {
+  if (mesh.mid_nodes().empty()) return 0;
+  // Nodes on edges three times, and a copy of the mesh while the run begins.
+  const MeshHeader& size = mesh.header();
+  return 90 * static_cast<double>(size.tet_count) + 24 * static_cast<double>(size.node_count);
+}
+
+double owner_bytes(const WarpArguments& arguments, const MeshReader& mesh) {
+  const bool needs_owners = extends(arguments.warp.outside) || takes_gaussian(arguments.warp) ||
+                            !mesh.mid_nodes().empty();
+  return needs_owners && !arguments.extra.contains(owner_output) ? sizeof(std::int32_t) : 0;
+}
+
 std::string limit_text(double bytes) {
   // One more, because the memory of the process differs a little between runs.
   return fmt::format("{:.0f}M", std::ceil(bytes / (1 << 20)) + 1);
@@ -110,9 +123,7 @@ double least_block_memory(BlockPlanner& planner,
   return least;
 }
 
-std::string needs_all_at_once(const WarpArguments& arguments, bool has_curves) {
-  if (has_curves)
-    return "tetrahedra of ten nodes need the whole source; split them by --ten-nodes split";
+std::string needs_all_at_once(const WarpArguments& arguments) {
   if (arguments.extra.contains(forward_output)) {
     return "the forward displacement needs the whole mesh; leave out --outputs forward";
   }
@@ -133,12 +144,17 @@ std::string needs_all_at_once(const WarpArguments& arguments, bool has_curves) {
   return {};
 }
 
+bool shares_blocks(const VolumePlan& plan, const WarpArguments& arguments, int processes) {
+  return processes > 1 && arguments.volumes().size() == 1 && plan.outputs.size() == 1 &&
+         needs_all_at_once(arguments).empty();
+}
+
 void refuse(VolumePlan& plan, const WarpArguments& arguments, const std::string& reason) {
   if (!arguments.dry_run) throw std::invalid_argument(reason);
   plan.refusal = reason;
 }
 
-double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments, bool has_curves) {
+double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments) {
   const double available = resident_memory() + available_memory();
   const double limit = arguments.memory > 0 ? std::min(arguments.memory, available) : available;
   if (plan.memory <= limit) return limit;
@@ -153,7 +169,7 @@ double set_memory_limit(VolumePlan& plan, const WarpArguments& arguments, bool h
                        plan.fields.empty() ? "a smaller --roi, " : ""));
     return limit;
   }
-  const std::string reason = needs_all_at_once(arguments, has_curves);
+  const std::string reason = needs_all_at_once(arguments);
   if (!reason.empty()) {
     throw IoError(plan.path, "",
                   fmt::format("{}, or give --memory at least {}", reason, limit_text(plan.memory)));
@@ -174,22 +190,11 @@ bool plan_memory(VolumePlan& plan,
     source_bytes +=
         source_voxels * array.components * filter_bytes(arguments.warp.filter, array.type);
   }
-  // Owners of voxels, kept where voxels outside, labels by Gaussian weights or curved maps depend
-  // on them.
-  const bool has_curves = !mesh.mid_nodes().empty();
-  const bool needs_owners =
-      extends(arguments.warp.outside) || takes_gaussian(arguments.warp) || has_curves;
-  const bool keeps_owners = needs_owners && !arguments.extra.contains(owner_output);
-  const double samples = source_bytes + output_bytes + (keeps_owners ? 4 * output_voxels : 0);
-  plan.memory = samples + fixed_memory(plan, arguments, mesh.header());
-  if (has_curves) {  // nodes on edges three times, and a copy of the mesh while the run begins
-    const MeshHeader& size = mesh.header();
-    plan.memory +=
-        90 * static_cast<double>(size.tet_count) + 24 * static_cast<double>(size.node_count);
-  }
+  const double samples = source_bytes + output_bytes + owner_bytes(arguments, mesh) * output_voxels;
+  plan.memory = samples + fixed_memory(plan, arguments, mesh.header()) + curve_memory(mesh);
   const bool is_exact = arguments.memory > 0 || arguments.dry_run;
   plan.memory += is_exact ? list_memory(plan, arguments, mesh, steps) : 0.01 * samples;
-  return plan.memory + output_bytes <= set_memory_limit(plan, arguments, has_curves);
+  return plan.memory + output_bytes <= set_memory_limit(plan, arguments);
 }
 
 }  // namespace tetwarp::cli

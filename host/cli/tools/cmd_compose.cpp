@@ -17,6 +17,7 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
+#include "host/cli/common/ten_nodes_option.hpp"
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/step_selection.hpp"
 #include "host/cli/tools/transform_chain.hpp"
@@ -99,6 +100,12 @@ void print_chain_notes(const std::string& output, const Grid& grid, const ChainN
                "tetwarp: {}: {} of {} positions were in no cell of a mesh and kept their "
                "place there\n",
                output, notes.outside, grid.voxel_count());
+  }
+  if (notes.straightened > 0) {
+    fmt::print(stderr,
+               "tetwarp: {}: {} of {} positions moved with straight tetrahedra, as the curved map "
+               "of theirs has no inverse there\n",
+               output, notes.straightened, grid.voxel_count());
   }
   if (notes.not_inverted > 0) {
     fmt::print(stderr,
@@ -185,6 +192,7 @@ void add_compose_command(CLI::App& app, Run& run) {
           },
           "steps of the meshes: numbers and half-open slices, e.g. 0:10:2 or -1 [all]")
       ->type_name("LIST");
+  add_ten_nodes(*command, arguments->mesh.import.keeps_curved);
   add_axes(*command, arguments->axes,
            "axes of meshes in .msh, .vtu and .vtk, and of the components of fields; lps is turned "
            "to ras [ras; of fields what their intent tells]");

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
-#include <tetwarp/map_points.hpp>
 #include <tetwarp/point_file.hpp>
 #include <vector>
 
@@ -21,6 +20,7 @@
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/step_selection.hpp"
 #include "host/cli/job/warnings.hpp"
+#include "host/cli/tools/mapped_points.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -76,11 +76,7 @@ MappedPoints moved(const PointsArguments& arguments,
                    const std::vector<Point3>& points,
                    const MapPointsOptions& options) {
   try {
-    if (mesh.mid_nodes().empty()) {
-      return map_points(mesh.mesh(), mesh.read_step(step), points, options);
-    }
-    return map_points(CurvedMesh{mesh.mesh(), mesh.mid_nodes()}, mesh.read_step(step), points,
-                      options);
+    return mapped_by(mesh, step, points, options);
   } catch (const std::invalid_argument& error) {
     throw IoError(arguments.mesh_file, "", error.what());
   }

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <tetwarp/map_points.hpp>
 #include <utility>
 
 #include "host/base/point3.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/tools/mapped_points.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -130,10 +130,11 @@ void ChainLink::apply(std::int64_t step,
                       std::vector<Point3>& points,
                       ChainNotes& notes) const {
   if (mesh_) {
-    MappedPoints mapped = map_points(
-        mesh_->mesh(), mesh_->read_step(step_count() == 1 ? 0 : step), std::move(points),
-        {.inverse = !is_inverse_, .threads = threads});  // a warp samples where material came from
+    MappedPoints mapped =
+        mapped_by(*mesh_, step_count() == 1 ? 0 : step, std::move(points),
+                  {.inverse = !is_inverse_, .threads = threads});  // as a warp samples its source
     notes.outside += mapped.outside;
+    notes.straightened += mapped.straightened;
     points = std::move(mapped.points);
     return;
   }

@@ -16,6 +16,7 @@ namespace tetwarp::cli {
 /// What points met on their way.
 struct ChainNotes {
   std::int64_t outside = 0;       ///< of a mesh: they kept their place there
+  std::int64_t straightened = 0;  ///< of a mesh: moved by straight tetrahedra, see CurvedMesh
   std::int64_t not_inverted = 0;  ///< of a field: no position was found that it takes there
   double largest_residual = 0;    ///< of those found [world]
 };

@@ -3,6 +3,7 @@
 #include "host/cli/warp/block_warper.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace tetwarp::cli {
@@ -74,8 +75,9 @@ void BlockWarper::make_warper(const WarpBlock& block, const Samples& windows) {
     WarpOptions options = task_.options;
     options.region = block.output;
     options.source_window = SourceWindow{block.source, sources_.ranges()};
-    part_mesh_ = block_mesh(mesh, block);
-    warper_.emplace(sources_.views_of(windows), part_mesh_->mesh, options);
+    BlockMesh& part = part_mesh_.emplace(block_mesh(mesh, block, mid_nodes));
+    warper_.emplace(sources_.views_of(windows),
+                    CurvedMesh{std::move(part.mesh), std::move(part.mid_nodes)}, options);
   }
   const Report& report = warper_->report();
   report_.device = report.device;

@@ -48,7 +48,7 @@ class BlockWarper {
   Report& report_;
   std::shared_ptr<Samples> kept_[2];    ///< outputs of a whole volume, used alternately
   std::size_t now_ = 0;                 ///< those of the last step
-  std::optional<BlockMesh> part_mesh_;  ///< nodes and cells of the block that is computed
+  std::optional<BlockMesh> part_mesh_;  ///< nodes of the block that is computed
   std::optional<Warper> warper_;
 };
 

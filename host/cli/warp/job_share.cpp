@@ -40,9 +40,7 @@ void run_volume(const WarpArguments& arguments,
                 std::size_t task,
                 ProgressBar& bar,
                 JobResult& result) {
-  const bool is_single = plan.volumes.size() == 1 && volume.outputs.size() == 1;
-  const bool has_curves = !plan.mesh.mid_nodes().empty();
-  if (ranks.count() > 1 && is_single && needs_all_at_once(arguments, has_curves).empty()) {
+  if (shares_blocks(volume, arguments, ranks.count())) {
     VolumeRun(arguments, plan, volume, ranks, bar, result).run();
     return;
   }

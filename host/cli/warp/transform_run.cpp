@@ -83,7 +83,7 @@ void TransformRun::plan_memory() {
   fixed_bytes_ = fixed_memory(plan_, arguments_, MeshHeader{});
   plan_.memory = fixed_bytes_ + samples + displacements;
   set_memory_limit(plan_, arguments_);
-  check_room(plan_, arguments_);
+  check_room({&plan_, 1}, arguments_);
   if (is_whole()) return;
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // the memory of a part is returned when it is freed
 }

@@ -21,8 +21,9 @@ VolumeBlocks::VolumeBlocks(const VolumeTask& task, const Ranks& ranks)
   if (task.is_whole) return;
   // glibc returns the memory of a block to the system when it is freed.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  planner_.emplace(task.volume.source_grid, task.job.mesh.mesh(), task.options);
-  fixed_bytes_ = fixed_memory(task.volume, task.arguments, task.job.mesh.header());
+  const MeshReader& mesh = task.job.mesh;
+  planner_.emplace(task.volume.source_grid, mesh.mesh(), task.options, mesh.mid_nodes());
+  fixed_bytes_ = fixed_memory(task.volume, task.arguments, mesh.header()) + curve_memory(mesh);
 }
 
 double VolumeBlocks::host_bytes() const {
@@ -45,7 +46,8 @@ BlockLimits VolumeBlocks::limits() const {
   }
   limits.source_voxel = voxel_bytes(task_.volume.arrays);
   limits.output_voxel = voxel_bytes(task_.outputs);
-  limits.scratch_voxel = task_.job.backend == Backend::reference ? 30 : 0;
+  limits.scratch_voxel = owner_bytes(task_.arguments, task_.job.mesh) +
+                         (task_.job.backend == Backend::reference ? 30 : 0);
   limits.step = block_step(grid, task_.outputs);
   return limits;
 }

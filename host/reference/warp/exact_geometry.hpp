@@ -37,20 +37,26 @@ struct IndexSpace {
     from_world = to_world.partialPivLu().inverse();
   }
 
-  /// Nearest multiple of 2^-20 voxel: ((W0 dx + W1 dy) + W2 dz) per row.
-  Quanta quanta_of(const double* world) const {
+  /// Nearest multiple of 2^-20 voxel: ((W0 dx + W1 dy) + W2 dz) per row; nothing beyond 2^40
+  /// voxels.
+  std::optional<Quanta> quanta_if_near(const double* world) const {
     Quanta q;
     for (int row = 0; row < 3; ++row) {
       double index = from_world(row, 0) * (world[0] - origin(0));
       index += from_world(row, 1) * (world[1] - origin(1));
       index += from_world(row, 2) * (world[2] - origin(2));
-      if (!(std::abs(index) <= 0x1p40)) {
-        throw std::invalid_argument("a node is over 2^40 voxels from the grid");
-      }
+      if (!(std::abs(index) <= 0x1p40)) return std::nullopt;
       q[static_cast<std::size_t>(row)] =
           static_cast<std::int64_t>(std::nearbyint(index * one_voxel));
     }
     return q;
+  }
+
+  /// The same. @throws std::invalid_argument beyond 2^40 voxels
+  Quanta quanta_of(const double* world) const {
+    const std::optional<Quanta> q = quanta_if_near(world);
+    if (!q) throw std::invalid_argument("a node is over 2^40 voxels from the grid");
+    return *q;
   }
 };
 

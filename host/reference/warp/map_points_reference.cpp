@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <tetwarp/map_points.hpp>
 #include <vector>
 
@@ -27,7 +26,7 @@ class PointReference {
       : plan_(plan), space_(plan.grid), lone_(plan.mesh.tets.size() - 6 * plan.mesh.hexes.size()) {
     for (const Point3& node : plan.from) rounded_.push_back(space_.quanta_of(node.data()));
     for (std::size_t n = 0; n < plan.to.size() && !plan.mid_nodes.empty(); ++n) {
-      rounded_to_.push_back(space_.quanta_of(plan.to[n].data()));
+      rounded_to_.push_back(space_.quanta_if_near(plan.to[n].data()));
     }
     for (std::size_t t = 0; t < plan.mesh.tets.size(); ++t) check_extent(corners_of(t));
   }
@@ -35,7 +34,7 @@ class PointReference {
   /// Moves a point. @returns the cell that holds it; -1: none, it stays
   /// @param straightened  counts those whose curved map has no inverse
   std::int32_t move(Point3& point, std::int64_t& straightened) const {
-    const std::optional<Quanta> x = quanta_of(point);
+    const std::optional<Quanta> x = space_.quanta_if_near(point.data());
     for (std::size_t t = 0; x && t < plan_.mesh.tets.size(); ++t) {
       const Corners corners = corners_of(t);
       if (signed_volume(corners) == 0) continue;
@@ -57,14 +56,6 @@ class PointReference {
   }
 
  private:
-  std::optional<Quanta> quanta_of(const Point3& point) const {
-    try {
-      return space_.quanta_of(point.data());
-    } catch (const std::invalid_argument&) {
-      return std::nullopt;  // too far from the grid
-    }
-  }
-
   Corners corners_of(std::size_t t) const {
     Corners corners;
     for (std::size_t node = 0; node < 4; ++node) {
@@ -94,8 +85,10 @@ class PointReference {
     if (t >= plan_.mid_nodes.size() || plan_.mid_nodes[t] == no_mid_nodes) return false;
     TenQuanta from, to;
     for (std::size_t n = 0; n < 10; ++n) {
+      const std::optional<Quanta>& moved = rounded_to_[node_of(t, n)];
+      if (!moved) return true;
       from[n] = rounded_[node_of(t, n)];
-      to[n] = rounded_to_[node_of(t, n)];
+      to[n] = *moved;
     }
     return !has_straight_edges(from) || !has_straight_edges(to);
   }
@@ -145,8 +138,9 @@ class PointReference {
   const PointPlan& plan_;
   IndexSpace space_;
   std::vector<Quanta> rounded_;
-  std::vector<Quanta> rounded_to_;  ///< after the motion; empty: no cell is curved
-  std::size_t lone_;                // tetrahedra that are not parts of hexahedra; they come first
+  /// After the motion, nothing for those too far from the grid; empty: no cell is curved.
+  std::vector<std::optional<Quanta>> rounded_to_;
+  std::size_t lone_;  // tetrahedra that are not parts of hexahedra; they come first
 };
 }  // namespace
 

@@ -77,18 +77,27 @@ class Ownership {
   struct Curve {
     QuadraticTetrahedron now;
     QuadraticTetrahedron rest;
+    bool is_lost = false;  ///< a middle node is too far from the grid
+
+    /// As QuadraticTetrahedron::inverse(), of the deformed cell.
+    std::optional<Eigen::Vector4d> inverse(const Eigen::Vector3d& x,
+                                           const Eigen::Vector4d& straight) const {
+      return is_lost ? std::nullopt : now.inverse(x, straight);
+    }
   };
   std::optional<Curve> curve_of(std::int32_t t,
                                 const double* rest_positions,
                                 const double* deformed) const {
     const auto tet = static_cast<std::size_t>(t);
     if (tet >= plan_.mid_nodes.size() || plan_.mid_nodes[tet] == no_mid_nodes) return std::nullopt;
-    TenQuanta now, rest;
+    TenQuanta now, rest{};
     for (std::size_t n = 0; n < 10; ++n) {
       const auto node =
           static_cast<std::size_t>(n < 4 ? plan_.mesh.tets[tet][n] : plan_.mid_nodes[tet][n - 4]);
-      now[n] = output.quanta_of(deformed + 3 * node);
+      const std::optional<Quanta> moved = output.quanta_if_near(deformed + 3 * node);
       rest[n] = source.quanta_of(rest_positions + 3 * node);
+      if (!moved) return Curve{QuadraticTetrahedron(rest), QuadraticTetrahedron(rest), true};
+      now[n] = *moved;
     }
     if (has_straight_edges(now) && has_straight_edges(rest)) return std::nullopt;
     if (whole_shift(rest, now)) return std::nullopt;
@@ -107,7 +116,7 @@ class Ownership {
     }
     const Corners now = corners_of(t, deformed, output);
     if (const auto curved = curve_of(t, rest, deformed)) {
-      if (const auto l = curved->now.inverse(voxel, weights_of(now, voxel))) {
+      if (const auto l = curved->inverse(voxel, weights_of(now, voxel))) {
         return output.to_world * curved->now.gradient(*l) *
                (source.to_world * curved->rest.gradient(*l)).inverse();
       }
@@ -163,7 +172,7 @@ class Ownership {
           const Eigen::Vector3d x(static_cast<double>(i), static_cast<double>(j),
                                   static_cast<double>(k));
           const std::optional<Eigen::Vector4d> l =
-              curve ? curve->now.inverse(x, b->weight) : std::nullopt;
+              curve ? curve->inverse(x, b->weight) : std::nullopt;
           counts.voxels_straightened += curve && !l;
           if (l) {
             source_position[v] = curve->rest.at(*l);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "host/warp/cpu/row_resample_cpu.cpp"
@@ -53,7 +54,11 @@ class RowResampler {
   void run(std::int64_t row) {
     const std::int64_t j = op_.begin[0] + row % op_.dims[1], k = op_.begin[1] + row / op_.dims[1],
                        nx = op_.dims[0];
-    if (field_.is_used()) field_.set_row(j, k);
+    if (field_.is_used()) {
+      field_.set_row(j, k);
+    } else if (links_.are_used()) {
+      links_.set_row(j, k);
+    }
     for (std::int64_t i = 0; i < nx; i += cell_edge) {
       // The last eight voxels may repeat some of those before them.
       add(std::min(i, nx - cell_edge), j, k, row);
@@ -72,8 +77,8 @@ class RowResampler {
     unsigned inside = 0;
     if (field_.is_used()) {
       inside = add_direct(i, j, k, field_.vectors(i), at) & field_.inside(i);
-    } else if (op_.map.links.size > 0) {
-      inside = add_linked(i, j, k, at);
+    } else if (links_.are_used()) {
+      inside = add_linked(i, at);
     } else {
       inside = add_direct(i, j, k, op_.map.has_field() ? op_.map.field.at(i, j, k) : nullptr, at);
     }
@@ -127,40 +132,58 @@ class RowResampler {
     return inside;
   }
 
-  /// The same by links.
-  unsigned add_linked(std::int64_t i, std::int64_t j, std::int64_t k, std::size_t at) {
-    EightPositions position;
-    const unsigned not_background = links_.positions(i, j, k, position);
-    alignas(64) float local[3][cell_edge];
-    alignas(64) std::int32_t whole[3][cell_edge];
-    const hn::CappedTag<double, cell_edge> dd;
-    const hn::Rebind<float, decltype(dd)> df;
-    const hn::Rebind<std::int32_t, decltype(dd)> di;
-    unsigned numbers = 0xff;
-    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(dd)) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto any = hn::Load(dd, position.at[axis] + lane);
-        const auto is_number = hn::Eq(any, any);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(dd, is_number, bits);
-        const unsigned all = (1u << hn::Lanes(dd)) - 1;
-        numbers &= ~((~unsigned{bits[0]} & all) << lane);
-        const auto x = hn::IfThenElseZero(is_number, any);
-        const auto near = hn::Min(hn::Max(x, hn::Set(dd, -far)), hn::Set(dd, far));
-        const auto lower = hn::Floor(near);
-        hn::Store(hn::DemoteTo(df, hn::Sub(near, lower)), df, local[axis] + lane);
-        hn::Store(hn::DemoteTo(di, lower), di, whole[axis] + lane);
-      }
+  using PositionTag = RowLinks::Tag;
+
+  /// Coordinates of some voxels, split.
+  struct Coordinates {
+    hn::Vec<hn::Rebind<float, PositionTag>> local;
+    hn::Vec<hn::Rebind<std::int32_t, PositionTag>> whole;
+  };
+
+  /// @param are_numbers  false in the lanes of those that are none
+  template <class Mask>
+  static HWY_INLINE Coordinates split(const double* at, Mask& are_numbers) {
+    const PositionTag d;
+    const auto any = hn::Load(d, at);
+    const auto is_number = hn::Eq(any, any);
+    are_numbers = hn::And(are_numbers, is_number);
+    const auto x = hn::IfThenElseZero(is_number, any);
+    const auto near = hn::Min(hn::Max(x, hn::Set(d, -far)), hn::Set(d, far));
+    const auto lower = hn::Floor(near);
+    return {hn::DemoteTo(hn::Rebind<float, PositionTag>(), hn::Sub(near, lower)),
+            hn::DemoteTo(hn::Rebind<std::int32_t, PositionTag>(), lower)};
+  }
+
+  /// Both halves of a vector; the first one where that is a whole vector.
+  template <class D, class Half>
+  static HWY_INLINE hn::Vec<D> joined(D d, Half low, Half high) {
+    if constexpr (std::is_same_v<hn::Vec<D>, Half>) {
+      return low;
+    } else {
+      return hn::Combine(d, high, low);
     }
-    unsigned inside = 0;
+  }
+
+  /// The same by links.
+  unsigned add_linked(std::int64_t i, std::size_t at) {
+    EightPositions position;
+    const unsigned not_background = links_.positions(i, position);
+    unsigned inside = 0, numbers = 0;
     const RowTag d;
+    const PositionTag dd;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      const std::size_t upper = lane + hn::Lanes(d) - hn::Lanes(dd);  // `lane` where one is enough
+      auto low_numbers = hn::Eq(hn::Zero(dd), hn::Zero(dd)), high_numbers = low_numbers;
       RowPositions<true> x;
       for (int axis = 0; axis < 3; ++axis) {
-        x.local[axis] = hn::Load(d, local[axis] + lane);
-        x.whole[axis] = hn::Sub(hn::Load(RowIntTag(), whole[axis] + lane),
+        const Coordinates low = split(position.at[axis] + lane, low_numbers);
+        const Coordinates high = split(position.at[axis] + upper, high_numbers);
+        x.local[axis] = joined(d, low.local, high.local);
+        x.whole[axis] = hn::Sub(joined(RowIntTag(), low.whole, high.whole),
                                 hn::Set(RowIntTag(), op_.job.source.origin[axis]));
       }
+      numbers |= RowLinks::bits_of_mask(low_numbers) << lane | RowLinks::bits_of_mask(high_numbers)
+                                                                   << upper;
       inside |= bits_of(store_taps<true>(shape_, is_nearest_, x, at + lane, taps_), lane);
     }
     return inside & numbers & not_background;

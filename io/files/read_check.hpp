@@ -1,0 +1,15 @@
+/// @file read_check.hpp
+/// A function that long reads call from time to time, such as the unpacking of gigabytes.
+#pragma once
+#include <tetwarp/io_export.hpp>
+
+namespace tetwarp {
+
+/// Sets what is called about once per megabyte of packed files; it may throw to end the read. Null:
+/// nothing. To be set before threads read.
+TETWARP_IO_EXPORT void set_read_check(void (*check)());
+
+/// Calls it.
+void check_read();
+
+}  // namespace tetwarp
