@@ -28,8 +28,9 @@ namespace tetwarp::python {
 namespace {
 /// Whether arrays in C order share memory.
 bool overlap(const auto& one, const auto& other) {
-  const auto* const first = static_cast<const std::byte*>(one.data());
-  const auto* const second = static_cast<const std::byte*>(other.data());
+  const auto bytes = [](const void* data) { return static_cast<const std::byte*>(data); };
+  const std::byte* const first = bytes(one.data());
+  const std::byte* const second = bytes(other.data());
   return first < second + other.nbytes() && second < first + one.nbytes();
 }
 
@@ -124,14 +125,19 @@ nb::dict run_step(ArrayWarper& warper,
                   bool holds_previous,
                   std::uintptr_t stream,
                   nb::object progress) {
+  const auto out_name = [&](std::size_t n) {
+    return volumes.size() == 1 ? std::string("out") : "out[" + std::to_string(n) + "]";
+  };
   std::vector<void*> samples;
   samples.reserve(volumes.size());
   for (std::size_t n = 0; n < volumes.size(); ++n) {
     const std::span earlier = std::span(volumes).first(n);
     if (warper.shares_memory(volumes[n]) ||
         std::ranges::any_of(earlier, [&](const AnyOut& out) { return overlap(out, volumes[n]); })) {
-      const std::string name = volumes.size() == 1 ? "out" : "out[" + std::to_string(n) + "]";
-      throw std::invalid_argument(name + ": shares memory with a source or another output");
+      throw std::invalid_argument(out_name(n) + ": shares memory with a source or another output");
+    }
+    if (overlap(deformed, volumes[n])) {
+      throw std::invalid_argument(out_name(n) + ": shares memory with deformed");
     }
     samples.push_back(volumes[n].data());
   }

@@ -16,7 +16,8 @@ namespace nb = nanobind;
 /// Decides within a call whether it goes on. Made and destroyed with the interpreter's lock.
 class Interruption {
  public:
-  /// @param progress  called with what go_on() gets; only False ends the call. None: no callback
+  /// @param progress  called with what go_on() gets; only False, also that of NumPy, ends the call.
+  ///                  None: no callback
   explicit Interruption(nb::object progress) : progress_(std::move(progress)) {}
 
   /// Called by the library, without the lock. False: the caller pressed Ctrl-C, or the callback
@@ -29,7 +30,9 @@ class Interruption {
     const nb::gil_scoped_acquire lock;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
-      return progress_.is_none() || !progress_(values...).is(Py_False);
+      if (progress_.is_none()) return true;
+      const nb::object answer = progress_(values...);
+      return answer.is_none() || answer.is(Py_True) || !is_false(answer);
     } catch (const nb::python_error&) {
       error_ = std::current_exception();
       return false;
@@ -54,6 +57,13 @@ class Interruption {
   }
 
  private:
+  static bool is_false(const nb::object& answer) {
+    const auto is_numpys = [&] {
+      return nb::isinstance(answer, nb::module_::import_("numpy").attr("bool_"));
+    };
+    return answer.is(Py_False) || (is_numpys() && !nb::bool_(answer));
+  }
+
   nb::object progress_;
   std::chrono::steady_clock::time_point next_ =
       std::chrono::steady_clock::now() + std::chrono::milliseconds(20);

@@ -13,8 +13,9 @@ import tetwarp
 def lacking(monkeypatch):
     """As a wheel: no VTK, no GDCM."""
     def refuse(path, *_):
-        kind = "DICOM" if str(path).endswith(".dcm") else "VTK's files"
-        raise tetwarp.IoError(f"{path}: this build cannot read {kind}; install it and build again")
+        error = tetwarp._core.MissingLibrary(f"{path}: this build cannot read it")
+        error.library = "GDCM" if str(path).endswith(".dcm") else "VTK"
+        raise error
 
     for name in ("MeshFile", "read_surface", "kind_of"):
         monkeypatch.setattr(tetwarp._core, name, refuse)
