@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,6 +14,17 @@ from ._arrays import integer_of, numbers_of, vector_of
 
 _UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _UNIT_ROWS = np.ravel(_UNIT)
+
+
+def shape_of(value: Any) -> tuple[int, int, int]:
+    """Voxels along z, y, x."""
+    numbers = value if type(value) is tuple else np.ravel(np.asarray(value, object))
+    shape: Any = tuple([integer_of(n, "shape") for n in numbers])
+    if len(shape) != 3:
+        raise ValueError(f"shape: expected three numbers z, y, x, got {value}")
+    if min(shape) < 1 or max(shape) > 2**30:
+        raise ValueError(f"shape: expected 1 to 2^30 voxels along each axis, got {shape}")
+    return shape
 
 
 @dataclass(frozen=True)
@@ -43,12 +56,7 @@ class Grid:
     direction: tuple[tuple[float, float, float], ...] = field(default=_UNIT)
 
     def __post_init__(self) -> None:
-        numbers = self.shape if type(self.shape) is tuple else np.ravel(np.asarray(self.shape, object))
-        shape = tuple([integer_of(n, "shape") for n in numbers])
-        if len(shape) != 3:
-            raise ValueError(f"shape: expected three numbers z, y, x, got {self.shape}")
-        if min(shape) < 1 or max(shape) > 2**30:
-            raise ValueError(f"shape: expected 1 to 2^30 voxels along each axis, got {shape}")
+        shape = shape_of(self.shape)
         rows = _UNIT_ROWS if self.direction is _UNIT else numbers_of(self.direction, "direction")
         if rows.size != 9:
             raise ValueError(f"direction: expected 3 x 3 numbers, got {rows.size}")
@@ -72,17 +80,7 @@ class Grid:
         matrix = numbers_of(affine, "affine")
         if matrix.size != 16:
             raise ValueError(f"affine: expected 4 x 4 numbers, got shape {np.shape(affine)}")
-        matrix = matrix.reshape(4, 4)
-        if matrix[3].tolist() != [0, 0, 0, 1]:
-            raise ValueError("affine: expected 0 0 0 1 as its last row")
-        axes = matrix[:3, :3]
-        lengths = np.sqrt(np.add.reduce(axes * axes, axis=0))
-        spacing: Any = tuple(lengths.tolist())
-        if not all(0 < length < np.inf for length in spacing):
-            raise ValueError("affine: expected finite columns other than 0")
-        origin: Any = tuple(matrix[:3, 3].tolist())
-        direction: Any = axes / lengths
-        return cls(shape, spacing, origin, direction)
+        return _grid_of_affine(shape_of(shape), matrix.tobytes())
 
     @property
     def affine(self) -> np.ndarray:
@@ -100,6 +98,19 @@ class Grid:
 
     def _core(self) -> _core.Grid:
         return self.__dict__["_made"]
+
+
+@lru_cache(maxsize=16)  # a call of warp with an affine matrix would take half as long again
+def _grid_of_affine(shape: tuple[int, int, int], matrix: bytes) -> Grid:
+    *rows, last = np.frombuffer(matrix).reshape(4, 4).tolist()
+    if last != [0, 0, 0, 1]:
+        raise ValueError("affine: expected 0 0 0 1 as its last row")
+    *axes, origin = zip(*rows)
+    spacing: Any = tuple([math.sqrt(x * x + y * y + z * z) for x, y, z in axes])
+    if not 0 < min(spacing) <= max(spacing) < math.inf:
+        raise ValueError("affine: expected finite columns other than 0")
+    direction: Any = tuple([(x / spacing[0], y / spacing[1], z / spacing[2]) for x, y, z, _ in rows])
+    return Grid(shape, spacing, origin, direction)
 
 
 def grid_from_core(grid: _core.Grid) -> Grid:
