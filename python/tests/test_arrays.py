@@ -92,6 +92,18 @@ def test_results_outlive_what_made_them(volume, mesh, twisted):
     assert np.array_equal(samples, volume.array)
 
 
+@pytest.mark.skipif(np.lib.NumpyVersion(np.__version__) < "2.0.0", reason="NumPy 1 asks otherwise")
+def test_volumes_and_fields_are_arrays_without_a_copy(volume, mesh):
+    field = tetwarp.jacobian_determinant(*mesh, mesh.points, reference=volume)
+    for value, array in ((volume, volume.array), (field, field.values)):
+        assert np.shares_memory(np.asarray(value), array)
+        assert np.shares_memory(np.asarray(value, array.dtype, copy=False), array)
+        assert not np.shares_memory(np.array(value, copy=True), array)
+        assert np.asarray(value, np.float64).dtype == np.float64
+        with pytest.raises(ValueError, match="copy: a conversion from float32"):
+            np.asarray(value, np.float64, copy=False)
+
+
 def test_arrays_of_the_library_are_not_copied():
     samples = tetwarp.phantom(shape=(20, 24, 32)).array
 

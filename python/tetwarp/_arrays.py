@@ -114,6 +114,8 @@ def samples_of(value: Any, name: str) -> np.ndarray:
     """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
     if isinstance(value, (str, os.PathLike)):
         raise ValueError(f"{name}: expected samples, got the name {value!r}; tetwarp.read reads it")
+    if hasattr(value, "dataobj") or hasattr(value, "GetPixelIDTypeAsString"):
+        raise ValueError(f"{name}: expected samples, got an image; tetwarp.volume_from takes it")
     array = array_of(value, name)
     dtype = array.dtype if array.dtype.isnative else array.dtype.newbyteorder("=")
     is_pixel = dtype in _NATIVE_PIXELS  # whose name takes longer
@@ -159,6 +161,12 @@ def check_callback(value: Any, name: str) -> None:
     """Raises ValueError for what is neither a function nor None."""
     if value is not None and not callable(value):
         raise ValueError(f"{name}: expected a function, got {value!r}")
+
+
+def check_kind(value: Any, kind: type, name: str) -> None:
+    """Raises ValueError for what is not of a class of this package."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name}: expected a {kind.__name__}, got {type(value).__name__}")
 
 
 def list_of(values: Any, name: str, what: str) -> list[Any]:

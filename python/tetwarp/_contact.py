@@ -12,6 +12,7 @@ from . import _core
 from ._arrays import (
     array_of,
     check_callback,
+    check_kind,
     integer_of,
     integers_of,
     number_of,
@@ -277,8 +278,7 @@ class ContactSolver:
         progress: Callable[[float, int], Any] | None = None,
     ) -> ContactSolution:
         """Solves one problem; see solve_contacts()."""
-        if not isinstance(problem, ContactProblem):
-            raise ValueError(f"problem: expected a ContactProblem, got {type(problem).__name__}")
+        check_kind(problem, ContactProblem, "problem")
         if problem.friction is None and (problem.jacobian or problem.delassus):
             raise ValueError("friction: expected one number per contact")
         check_callback(progress, "progress")

@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from ._arrays import (
     array_of,
+    check_kind,
     in_order,
     integer_of,
     integers_of,
@@ -295,8 +296,7 @@ class ContactTracker:
         RuntimeError
             no step has begun.
         """
-        if not isinstance(problem, ContactProblem):
-            raise ValueError(f"problem: expected a ContactProblem, got {type(problem).__name__}")
+        check_kind(problem, ContactProblem, "problem")
         filled = self._tracker.fill()
         rows = 3 * (self._count or 0)
         if problem.jacobian is not None and problem.jacobian.shape[0] != rows:
