@@ -13,6 +13,7 @@
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
+#include "python/interpreter_lock.hpp"
 
 namespace tetwarp::python {
 namespace {
@@ -23,7 +24,7 @@ nb::tuple lattice_mesh(const InSamples& samples,
                        bool hexahedra) {
   Mesh mesh;
   {
-    const nb::gil_scoped_release release;
+    const LockReleased release;
     mesh = make_lattice_mesh(volume_of(samples, grid, "volume"), {cells, threshold, hexahedra});
   }
   nb::object cells_array = hexahedra ? nb::cast(array_of(std::move(mesh.hexes)))
@@ -73,7 +74,7 @@ void bind_mesh(nb::module_& module) {
          std::optional<std::int64_t> triangles) {
         Surface surface;
         {
-          const nb::gil_scoped_release release;
+          const LockReleased release;
           surface = make_isosurface(volume_of(samples, grid, "volume"), value, triangles);
         }
         return surface_arrays(std::move(surface));
@@ -85,7 +86,7 @@ void bind_mesh(nb::module_& module) {
          const InTets& tets, const InHexes& hexes, const InPoints& deformed, bool inverse) {
         MappedPoints mapped;
         {
-          const nb::gil_scoped_release release;
+          const LockReleased release;
           mapped = map_points(mesh_of(rest, tets, hexes), points_of(deformed), points_of(points),
                               {.inverse = inverse, .grid = grid});
         }

@@ -22,6 +22,7 @@
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
+#include "python/interpreter_lock.hpp"
 #include "python/interruption.hpp"
 
 namespace tetwarp::python {
@@ -63,7 +64,7 @@ class ArrayWarper {
   Warper make_warper(const Grid& grid, const Mesh& mesh, const WarpOptions& options) const {
     std::vector<VolumeView> views;
     for (const AnySamples& samples : sources_) views.push_back(view_of(samples, grid));
-    const nb::gil_scoped_release release;
+    const LockReleased release;
     return {views, mesh, options};
   }
 

@@ -9,6 +9,8 @@
 #include <exception>
 #include <utility>
 
+#include "python/interpreter_lock.hpp"
+
 namespace tetwarp::python {
 
 namespace nb = nanobind;
@@ -27,7 +29,7 @@ class Interruption {
     const auto now = std::chrono::steady_clock::now();
     if (progress_.is_none() && now < next_) return true;
     next_ = now + std::chrono::milliseconds(20);
-    const nb::gil_scoped_acquire lock;
+    const LockHeld lock;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
       if (progress_.is_none()) return true;
@@ -44,7 +46,7 @@ class Interruption {
   template <class Call>
   auto run(const Call& call) {
     try {
-      const nb::gil_scoped_release release;
+      const LockReleased release;
       return call();
     } catch (...) {
       throw_error();
