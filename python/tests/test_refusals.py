@@ -46,7 +46,7 @@ BAD = {
     "cells": ARRAYS + [CELLS.astype(float), -CELLS - 1, CELLS.astype(np.uint64) + 2**63, CELLS > 0],
     "numbers": [a for a in ARRAYS if not isinstance(a, (int, list))] + [[[1, 2], [3]], [np.nan]],
     "matrix": ARRAYS + [np.full((4, 4), np.nan), np.zeros((3, 3)), np.eye(2)],
-    "vector": ARRAYS + [(1, 2), (0, np.nan, 0), (1j, 0, 0), (np.inf, 1, 1)],
+    "vector": ARRAYS + [(1, 2), (0, np.nan, 0), (1j, 0, 0), (np.inf, 1, 1), (10**400, 1, 1)],
     "shape": ARRAYS + [(0, 1, 1), (-1, 2, 2), (1.0, 2, 3), (2**40, 1, 1), (1, 2)],
     "number": NUMBERS,
     "integer": NUMBERS + [None, 1.5, np.float64(2), 2**70, -2**70],

@@ -354,7 +354,7 @@ def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
 def vector_of(value: Any, name: str) -> tuple[float, float, float]:
     """Three numbers x, y, z."""
     if type(value) is tuple and len(value) == 3 and {*map(type, value)} <= {float, int}:
-        return float(value[0]), float(value[1]), float(value[2])
+        return number_of(value[0], name), number_of(value[1], name), number_of(value[2], name)
     numbers = numbers_of(value, name)
     if numbers.size != 3:
         raise ValueError(f"{name}: expected three numbers x, y, z, got {numbers.size}")
