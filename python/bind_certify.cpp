@@ -12,6 +12,7 @@
 
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
+#include "python/interpreter_lock.hpp"
 
 namespace tetwarp::python {
 namespace {
@@ -38,7 +39,7 @@ nb::dict certify_arrays(const std::vector<InPoints>& starts,
   }
   Certificate found;
   {
-    const nb::gil_scoped_release release;
+    const LockReleased release;
     found = certify(surfaces, {self, most_intervals, threads});
   }
   std::vector<std::array<std::int32_t, 2>> pair_surfaces, pair_triangles;

@@ -1,11 +1,13 @@
 /// @file bind_files.cpp
 /// Files of volumes, meshes and surfaces.
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <tetwarp/io.hpp>
@@ -20,6 +22,7 @@
 #include "python/choices.hpp"
 #include "python/curved_arrays.hpp"
 #include "python/file_call.hpp"
+#include "python/text.hpp"
 
 namespace tetwarp::python {
 namespace {
@@ -30,8 +33,8 @@ nb::dict dict_of(const NiftiFacts& facts) {
   all["xyzt_units"] = facts.xyzt_units;
   all["intent_code"] = facts.intent_code;
   all["intent_p"] = nb::make_tuple(facts.intent_p[0], facts.intent_p[1], facts.intent_p[2]);
-  all["intent_name"] = facts.intent_name;
-  all["description"] = facts.description;
+  all["intent_name"] = text_of(facts.intent_name);
+  all["description"] = text_of(facts.description);
   all["component_axes"] = name_of(facts.component_axes);
   all["cal_min"] = facts.cal_min;
   all["cal_max"] = facts.cal_max;
@@ -39,20 +42,44 @@ nb::dict dict_of(const NiftiFacts& facts) {
   return all;
 }
 
+/// @param all  as dict_of(); what is missing keeps its default
+/// @throws std::invalid_argument  naming a member that is unknown or of another type
 NiftiFacts facts_of(const nb::dict& all) {
   NiftiFacts facts;
-  facts.sform_code = nb::cast<int>(all["sform_code"]);
-  facts.qform_code = nb::cast<int>(all["qform_code"]);
-  facts.xyzt_units = nb::cast<int>(all["xyzt_units"]);
-  facts.intent_code = nb::cast<int>(all["intent_code"]);
-  for (std::size_t p = 0; p < 3; ++p) facts.intent_p[p] = nb::cast<double>(all["intent_p"][p]);
-  facts.intent_name = nb::cast<std::string>(all["intent_name"]);
-  facts.description = nb::cast<std::string>(all["description"]);
-  facts.component_axes = choice<Axes>("axes", nb::cast<std::string>(all["component_axes"]));
-  facts.cal_min = nb::cast<double>(all["cal_min"]);
-  facts.cal_max = nb::cast<double>(all["cal_max"]);
-  facts.time_step = nb::cast<double>(all["time_step"]);
+  const nb::dict known = dict_of(facts);
+  for (const auto [key, value] : all) {
+    if (known.contains(key)) continue;
+    throw std::invalid_argument("nifti: " + std::string(nb::repr(key).c_str()) +
+                                " is no member of what read() gives");
+  }
+  const auto set = [&](const char* name, auto& member) {
+    if (!all.contains(name) || nb::try_cast(all[name], member)) return;
+    throw std::invalid_argument(std::string("nifti: ") + name + ": expected such as " +
+                                nb::repr(known[name]).c_str());
+  };
+  const auto set_text = [&](const char* name, std::string& member) {
+    if (all.contains(name)) member = bytes_of(all[name], std::string("nifti: ") + name);
+  };
+  set("sform_code", facts.sform_code);
+  set("qform_code", facts.qform_code);
+  set("xyzt_units", facts.xyzt_units);
+  set("intent_code", facts.intent_code);
+  set("intent_p", facts.intent_p);
+  set_text("intent_name", facts.intent_name);
+  set_text("description", facts.description);
+  std::string axes = name_of(facts.component_axes);
+  set_text("component_axes", axes);
+  facts.component_axes = choice<Axes>("nifti: component_axes", axes);
+  set("cal_min", facts.cal_min);
+  set("cal_max", facts.cal_max);
+  set("time_step", facts.time_step);
   return facts;
+}
+
+nb::list texts_of(const std::vector<std::string>& texts) {
+  nb::list all;
+  for (const std::string& text : texts) all.append(text_of(text));
+  return all;
 }
 
 nb::object dict_of(const std::optional<NiftiFacts>& facts) {
@@ -64,7 +91,7 @@ nb::dict volume_header(const std::string& path) {
   nb::list arrays;
   for (const ArrayHeader& array : header.arrays) {
     nb::dict entry;
-    entry["name"] = array.name;
+    entry["name"] = text_of(array.name);
     entry["dtype"] = name_of(array.type);
     entry["components"] = array.components;
     arrays.append(entry);
@@ -72,15 +99,15 @@ nb::dict volume_header(const std::string& path) {
   nb::dict all;
   all["grid"] = header.grid;
   all["arrays"] = arrays;
-  all["active"] = header.active;
+  all["active"] = text_of(header.active);
   all["times"] = header.times;
-  all["not_read"] = header.not_read;
+  all["not_read"] = texts_of(header.not_read);
   return all;
 }
 
 /// Samples, grid, name, header of NIfTI or None.
 nb::tuple read_one_volume(const std::string& path,
-                          const std::string& array,
+                          const nb::str& array,
                           std::int64_t step,
                           const std::string& axes,
                           bool are_labels) {
@@ -88,15 +115,16 @@ nb::tuple read_one_volume(const std::string& path,
   options.axes = choice<Axes>("axes", axes);
   options.are_labels = are_labels;
   std::optional<NiftiFacts> facts;
+  const std::string wanted = bytes_of(array, "array");
   Volume volume = file_call([&] {
-    Volume read = read_volume(path, array, step, options);
+    Volume read = read_volume(path, wanted, step, options);
     for (const ArrayHeader& header : read_volume_header(path, options).arrays) {
       if (header.name == read.name) facts = header.nifti;
     }
     return read;
   });
   const Grid grid = volume.grid;
-  const std::string name = volume.name;
+  const nb::object name = text_of(volume.name);
   return nb::make_tuple(array_of(std::move(volume)), grid, name, dict_of(facts));
 }
 
@@ -112,9 +140,15 @@ void write_volume_file(const std::string& path,
   for (const nb::dict& array : arrays) {
     samples.push_back(nb::cast<std::vector<InSamples>>(array["samples"], false));
     const VolumeView first = view_of(AnySamples(samples.back().front()), grid);
-    ArrayHeader header{nb::cast<std::string>(array["name"]), first.type, first.components};
-    header.nifti = array["nifti"].is_none() ? default_nifti_facts(header.components)
-                                            : facts_of(nb::cast<nb::dict>(array["nifti"]));
+    ArrayHeader header{bytes_of(array["name"], "name"), first.type, first.components};
+    nb::dict facts;
+    if (array["nifti"].is_none()) {
+      header.nifti = default_nifti_facts(header.components);
+    } else if (nb::try_cast(array["nifti"], facts)) {
+      header.nifti = facts_of(facts);
+    } else {
+      throw std::invalid_argument("nifti: expected a dict, as read() gives it");
+    }
     header.is_itk_field = nb::cast<bool>(array["is_itk_field"]);
     if (header.is_itk_field) header.nifti->component_axes = Axes::lps;
     headers.push_back(header);
@@ -214,7 +248,8 @@ void bind_files(nb::module_& module) {
            nb::arg("rest_step"), nb::arg("axes"), nb::arg("keeps_curved"))
       .def("mesh", &mesh_arrays)
       .def_prop_ro("times", [](const MeshFile& file) { return file.reader().header().times; })
-      .def_prop_ro("not_read", [](const MeshFile& file) { return file.reader().header().not_read; })
+      .def_prop_ro("not_read",
+                   [](const MeshFile& file) { return texts_of(file.reader().header().not_read); })
       .def(
           "read_step",
           [](const MeshFile& file, std::int64_t step) {

@@ -14,6 +14,7 @@
 #include "python/bind.hpp"
 #include "python/choices.hpp"
 #include "python/curved_arrays.hpp"
+#include "python/interpreter_lock.hpp"
 
 namespace tetwarp::python {
 namespace {
@@ -24,7 +25,7 @@ nb::tuple lattice_mesh(const InSamples& samples,
                        bool hexahedra) {
   Mesh mesh;
   {
-    const nb::gil_scoped_release release;
+    const LockReleased release;
     mesh = make_lattice_mesh(volume_of(samples, grid, "volume"), {cells, threshold, hexahedra});
   }
   nb::object cells_array = hexahedra ? nb::cast(array_of(std::move(mesh.hexes)))
@@ -74,7 +75,7 @@ void bind_mesh(nb::module_& module) {
          std::optional<std::int64_t> triangles) {
         Surface surface;
         {
-          const nb::gil_scoped_release release;
+          const LockReleased release;
           surface = make_isosurface(volume_of(samples, grid, "volume"), value, triangles);
         }
         return surface_arrays(std::move(surface));
@@ -87,7 +88,7 @@ void bind_mesh(nb::module_& module) {
          bool inverse) {
         MappedPoints mapped;
         {
-          const nb::gil_scoped_release release;
+          const LockReleased release;
           mapped = map_points(curved_mesh_of(rest, tets, hexes, mids), points_of(deformed),
                               points_of(points), {.inverse = inverse, .grid = grid});
         }

@@ -11,6 +11,7 @@
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
+#include "python/interpreter_lock.hpp"
 
 namespace tetwarp::python {
 namespace {
@@ -41,26 +42,26 @@ void make_operator(WarpOperator* self,
                                     .threads = threads};
   const Mesh mesh = mesh_of(points, tets, hexes);
   const std::vector<Point3> nodes = points_of(deformed);
-  const nb::gil_scoped_release release;
+  const LockReleased release;
   new (self) WarpOperator(source, mesh, nodes, options);
 }
 
 void apply_forward(const WarpOperator& self, const InNumbers& x, const OutNumbers& y) {
   const std::span<double> out(y.data(), y.size());
-  const nb::gil_scoped_release release;
+  const LockReleased release;
   self.forward(span_of(x), out);
 }
 
 void apply_adjoint(const WarpOperator& self, const InNumbers& y, const OutNumbers& x) {
   const std::span<double> out(x.data(), x.size());
-  const nb::gil_scoped_release release;
+  const LockReleased release;
   self.adjoint(span_of(y), out);
 }
 
 NumpyArray gradient_of(const WarpOperator& self, const InNumbers& x, const InNumbers& y) {
   std::vector<Point3> gradient;
   {
-    const nb::gil_scoped_release release;
+    const LockReleased release;
     gradient = self.node_gradient(span_of(x), span_of(y));
   }
   return array_of<double>(std::move(gradient));

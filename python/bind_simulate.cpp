@@ -19,6 +19,7 @@
 #include "python/bind.hpp"
 #include "python/choices.hpp"
 #include "python/file_call.hpp"
+#include "python/interpreter_lock.hpp"
 #include "python/interruption.hpp"
 
 namespace tetwarp::python {
@@ -133,7 +134,7 @@ class SceneSimulator {
       return interruption_ == nullptr ||
              interruption_->go_on(progress.step, progress.time, progress.linear_iterations);
     };
-    const nb::gil_scoped_release release;
+    const LockReleased release;
     simulator_.emplace(std::move(scene), options);
   }
 

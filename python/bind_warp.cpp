@@ -23,14 +23,16 @@
 #include "python/bind.hpp"
 #include "python/choices.hpp"
 #include "python/curved_arrays.hpp"
+#include "python/interpreter_lock.hpp"
 #include "python/interruption.hpp"
 
 namespace tetwarp::python {
 namespace {
 /// Whether arrays in C order share memory.
 bool overlap(const auto& one, const auto& other) {
-  const auto* const first = static_cast<const std::byte*>(one.data());
-  const auto* const second = static_cast<const std::byte*>(other.data());
+  const auto bytes = [](const void* data) { return static_cast<const std::byte*>(data); };
+  const std::byte* const first = bytes(one.data());
+  const std::byte* const second = bytes(other.data());
   return first < second + other.nbytes() && second < first + one.nbytes();
 }
 
@@ -63,7 +65,7 @@ class ArrayWarper {
   Warper make_warper(const Grid& grid, const CurvedMesh& mesh, const WarpOptions& options) const {
     std::vector<VolumeView> views;
     for (const AnySamples& samples : sources_) views.push_back(view_of(samples, grid));
-    const nb::gil_scoped_release release;
+    const LockReleased release;
     return {views, mesh, options};
   }
 
@@ -102,37 +104,51 @@ nb::dict dict_of(const Totals& totals) {
   return all;
 }
 
-nb::dict report_of(const Report& whole, const StepReport& step) {
+/// What a step did, and the members of the report that all steps share.
+struct StepOf {
+  StepReport step;
+  Backend backend;
+  std::string backend_reason, device;
+  int threads;
+  double position_quantum;
+};
+
+nb::dict dict_of(const StepOf& of) {
   nb::dict counts, timings, report;
-  for (const auto& field : count_fields) counts[field.name] = step.counts.*field.member;
-  for (const auto& field : timing_fields) timings[field.name] = step.timings.*field.member;
-  report["backend"] = name_of(whole.backend);
-  report["backend_reason"] = whole.backend_reason;
-  report["device"] = whole.device;
-  report["threads"] = whole.threads;
-  report["position_quantum"] = whole.position_quantum;
-  report["step"] = step.step;
+  for (const auto& field : count_fields) counts[field.name] = of.step.counts.*field.member;
+  for (const auto& field : timing_fields) timings[field.name] = of.step.timings.*field.member;
+  report["backend"] = name_of(of.backend);
+  report["backend_reason"] = of.backend_reason;
+  report["device"] = of.device;
+  report["threads"] = of.threads;
+  report["position_quantum"] = of.position_quantum;
+  report["step"] = of.step.step;
   report["counts"] = counts;
   report["timings"] = timings;
-  report["totals"] = dict_of(step.totals);
+  report["totals"] = dict_of(of.step.totals);
   return report;
 }
 
-nb::dict run_step(ArrayWarper& warper,
-                  const AnyPoints& deformed,
-                  const std::vector<AnyOut>& volumes,
-                  const nb::dict& extras,
-                  bool holds_previous,
-                  std::uintptr_t stream,
-                  nb::object progress) {
+StepOf run_step(ArrayWarper& warper,
+                const AnyPoints& deformed,
+                const std::vector<AnyOut>& volumes,
+                const nb::dict& extras,
+                bool holds_previous,
+                std::uintptr_t stream,
+                nb::object progress) {
+  const auto out_name = [&](std::size_t n) {
+    return volumes.size() == 1 ? std::string("out") : "out[" + std::to_string(n) + "]";
+  };
   std::vector<void*> samples;
   samples.reserve(volumes.size());
   for (std::size_t n = 0; n < volumes.size(); ++n) {
     const std::span earlier = std::span(volumes).first(n);
     if (warper.shares_memory(volumes[n]) ||
         std::ranges::any_of(earlier, [&](const AnyOut& out) { return overlap(out, volumes[n]); })) {
-      const std::string name = volumes.size() == 1 ? "out" : "out[" + std::to_string(n) + "]";
-      throw std::invalid_argument(name + ": shares memory with a source or another output");
+      throw std::invalid_argument(out_name(n) + ": shares memory with a source or another output");
+    }
+    if (overlap(deformed, volumes[n])) {
+      throw std::invalid_argument(out_name(n) + ": shares memory with deformed");
     }
     samples.push_back(volumes[n].data());
   }
@@ -142,7 +158,9 @@ nb::dict run_step(ArrayWarper& warper,
   target.holds_previous = holds_previous;
   target.stream = reinterpret_cast<void*>(stream);
   const StepReport step = warper.step(positions, target, std::move(progress));
-  return report_of(warper.warper().report(), step);
+  const Report& whole = warper.warper().report();
+  return {step,         whole.backend, whole.backend_reason,
+          whole.device, whole.threads, whole.position_quantum};
 }
 
 void make_array_warper(ArrayWarper* self,
@@ -188,6 +206,9 @@ void make_array_warper(ArrayWarper* self,
 }  // namespace
 
 void bind_warp(nb::module_& module) {
+  nb::class_<StepOf>(module, "StepReport").def("dict", [](const StepOf& self) {
+    return dict_of(self);
+  });
   nb::class_<ArrayWarper>(module, "Warper")
       .def("__init__", &make_array_warper, nb::arg("sources"), nb::arg("grid"), nb::arg("points"),
            nb::arg("tets"), nb::arg("hexes"), nb::arg("mids"), nb::kw_only(),

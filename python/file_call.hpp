@@ -1,9 +1,9 @@
 /// @file file_call.hpp
 /// Calls of the library that use files.
 #pragma once
-#include <nanobind/nanobind.h>
-
 #include <mutex>
+
+#include "python/interpreter_lock.hpp"
 
 namespace tetwarp::python {
 
@@ -17,7 +17,7 @@ inline std::mutex& file_mutex() {
 /// support for threads.
 template <class Call>
 auto file_call(const Call& call) {
-  const nanobind::gil_scoped_release release;
+  const LockReleased release;
   const std::lock_guard lock(file_mutex());
   return call();
 }

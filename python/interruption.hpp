@@ -9,6 +9,8 @@
 #include <exception>
 #include <utility>
 
+#include "python/interpreter_lock.hpp"
+
 namespace tetwarp::python {
 
 namespace nb = nanobind;
@@ -16,7 +18,8 @@ namespace nb = nanobind;
 /// Decides within a call whether it goes on. Made and destroyed with the interpreter's lock.
 class Interruption {
  public:
-  /// @param progress  called with what go_on() gets; only False ends the call. None: no callback
+  /// @param progress  called with what go_on() gets; only False, also that of NumPy, ends the call.
+  ///                  None: no callback
   explicit Interruption(nb::object progress) : progress_(std::move(progress)) {}
 
   /// Called by the library, without the lock. False: the caller pressed Ctrl-C, or the callback
@@ -26,10 +29,12 @@ class Interruption {
     const auto now = std::chrono::steady_clock::now();
     if (progress_.is_none() && now < next_) return true;
     next_ = now + std::chrono::milliseconds(20);
-    const nb::gil_scoped_acquire lock;
+    const LockHeld lock;
     try {
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
-      return progress_.is_none() || !progress_(values...).is(Py_False);
+      if (progress_.is_none()) return true;
+      const nb::object answer = progress_(values...);
+      return answer.is_none() || answer.is(Py_True) || !is_false(answer);
     } catch (const nb::python_error&) {
       error_ = std::current_exception();
       return false;
@@ -41,7 +46,7 @@ class Interruption {
   template <class Call>
   auto run(const Call& call) {
     try {
-      const nb::gil_scoped_release release;
+      const LockReleased release;
       return call();
     } catch (...) {
       throw_error();
@@ -54,6 +59,13 @@ class Interruption {
   }
 
  private:
+  static bool is_false(const nb::object& answer) {
+    const auto is_numpys = [&] {
+      return nb::isinstance(answer, nb::module_::import_("numpy").attr("bool_"));
+    };
+    return answer.is(Py_False) || (is_numpys() && !nb::bool_(answer));
+  }
+
   nb::object progress_;
   std::chrono::steady_clock::time_point next_ =
       std::chrono::steady_clock::now() + std::chrono::milliseconds(20);

@@ -4,12 +4,15 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
+#include <exception>
 #include <string>
 #include <tetwarp/backend.hpp>
 #include <tetwarp/error.hpp>
+#include <tetwarp/missing_library.hpp>
 #include <tetwarp/version.hpp>
 
 #include "python/bind.hpp"
+#include "python/text.hpp"
 
 namespace nb = nanobind;
 
@@ -26,6 +29,21 @@ nb::list backends(int device) {
   }
   return all;
 }
+
+/// Raises an error about a file, whose text may hold bytes of the file.
+void raise_io_error(const std::exception_ptr& pointer, void* module) {
+  const nb::handle core(static_cast<PyObject*>(module));
+  try {
+    std::rethrow_exception(pointer);
+  } catch (const tetwarp::MissingLibrary& error) {
+    const nb::object instance = core.attr("MissingLibrary")(tetwarp::python::text_of(error.what()));
+    instance.attr("library") = error.library();
+    PyErr_SetObject(instance.type().ptr(), instance.ptr());
+  } catch (const tetwarp::IoError& error) {
+    const nb::object instance = core.attr("IoError")(tetwarp::python::text_of(error.what()));
+    PyErr_SetObject(instance.type().ptr(), instance.ptr());
+  }
+}
 }  // namespace
 
 NB_MODULE(_core, module) {
@@ -35,10 +53,14 @@ NB_MODULE(_core, module) {
         "tetwarp: sub-interpreters are not supported; import it in the main interpreter or in "
         "another process");
   }
+  nb::set_leak_warnings(false);  // objects of threads that run when the program ends
   module.doc() = "The library behind the package tetwarp.";
   module.attr("version") = TETWARP_VERSION;
   const nb::exception<CudaError> cuda_error(module, "CudaError", PyExc_RuntimeError);
   const nb::exception<IoError> io_error(module, "IoError", PyExc_OSError);
+  nb::exception<MissingLibrary> missing(module, "MissingLibrary", io_error.ptr());
+  missing.attr("library") = "";
+  nb::register_exception_translator(&raise_io_error, module.ptr());
   const nb::exception<Cancelled> cancelled(module, "Cancelled", PyExc_RuntimeError);
   module.def("available_backends", &backends, nb::arg("device") = 0,
              "A dict per back end: backend, usable, device, and why it is not usable.");

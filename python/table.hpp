@@ -39,17 +39,20 @@ struct ColumnOf<std::array<std::array<double, size>, size>> {
 
 /// Sets a member of each row from the array of its name; without one the member keeps its default.
 /// @param field  gives a reference to the member of a row
-/// @throws std::invalid_argument  the array has other numbers of rows or columns
+/// @throws std::invalid_argument  the array has other numbers of rows or columns, or another type
 template <class Row, class Field>
 void read_column(const nb::dict& table, const char* name, std::vector<Row>& rows, Field field) {
   using Member = std::remove_cvref_t<decltype(field(rows.front()))>;
   using Number = typename ColumnOf<Member>::Number;
   constexpr std::size_t width = ColumnOf<Member>::width;
   if (!table.contains(name)) return;
-  const auto numbers = nb::cast<In<Number>>(table[name], false);
-  if (numbers.size() != rows.size() * width) {
+  In<Number> numbers;
+  const bool is_taken = nb::try_cast(table[name], numbers, false);
+  if (!is_taken || numbers.size() != rows.size() * width) {
     throw std::invalid_argument(std::string(name) + ": expected " +
-                                std::to_string(rows.size() * width) + " numbers");
+                                std::to_string(rows.size() * width) + " numbers of " +
+                                std::to_string(8 * sizeof(Number)) + " bits, " +
+                                (std::is_floating_point_v<Number> ? "float" : "integer"));
   }
   for (std::size_t r = 0; r < rows.size(); ++r) {
     Member& member = field(rows[r]);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <tetwarp/error.hpp>
+#include <tetwarp/missing_library.hpp>
 
 #include "io/child/child_message.hpp"
 #include "io/child/child_process.hpp"
@@ -23,8 +23,9 @@ struct ChildLimits {
 /// @param time  [s] that it may take; 0: by the size of the file
 ChildLimits limits_for(const std::string& path, double time = 0);
 
-/// First value of a message: the result follows, or name of a dataset and text of an error.
-enum class ChildOutcome : std::uint8_t { result, error };
+/// First value of a message: the result follows, name of a dataset and text of an error, or name of
+/// a library and text of a MissingLibrary.
+enum class ChildOutcome : std::uint8_t { result, error, missing_library };
 
 /// Path of the program: TETWARP_READER in the environment, else it is searched beside this library
 /// or program and where both are installed. @throws IoError  of `path`, when it is not found
@@ -36,10 +37,10 @@ void expect_result(const std::string& path, Message& message) {
   ChildOutcome outcome{};
   message(outcome);
   if (outcome == ChildOutcome::result) return;
-  std::string dataset, problem;
-  message(dataset);
-  message(problem);
-  throw IoError(path, dataset, problem);
+  std::string name, problem;
+  message(name, problem);
+  if (outcome == ChildOutcome::missing_library) throw MissingLibrary(path, name, problem);
+  throw IoError(path, name, problem);
 }
 
 /// Starts the program with words and has `receive` read its result.

@@ -3,6 +3,7 @@
 #include "io/files/sink_checks.hpp"
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -23,6 +24,12 @@ const ArrayHeader& only_array(const std::string& path,
     throw IoError(path, "", error.what());
   }
   return arrays.front();
+}
+
+void check_time(const std::string& path, double time) {
+  if (std::isfinite(time)) return;
+  throw IoError(path, "",
+                "the time of a step is " + std::to_string(time) + ", expected a finite number");
 }
 
 void throw_disk_error(const std::string& path) {

@@ -16,6 +16,9 @@ const ArrayHeader& only_array(const std::string& path,
                               const Grid& grid,
                               const std::vector<ArrayHeader>& arrays);
 
+/// @throws IoError  the time of a step is not finite, which no reader takes
+void check_time(const std::string& path, double time);
+
 /// @throws IoError  always: a write has failed for the reason in errno
 [[noreturn]] void throw_disk_error(const std::string& path);
 

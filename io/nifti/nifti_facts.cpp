@@ -13,6 +13,9 @@
 namespace tetwarp {
 namespace {
 const std::string prefix = "tetwarp_nifti_";
+// Of the fields of a header.
+constexpr int largest_code = 32767, largest_units = 255;
+constexpr std::size_t name_bytes = 16, description_bytes = 80;
 
 int read_code(const h5::Object& dataset, const std::string& name, std::int64_t largest) {
   const std::int64_t value = h5::read_integer_attribute(dataset, prefix + name, 1)[0];
@@ -45,7 +48,37 @@ NiftiFacts default_nifti_facts(int components) {
   return facts;
 }
 
+std::string facts_problem(const NiftiFacts& facts) {
+  const auto of_code = [](const std::string& name, int value, int largest) {
+    return value >= 0 && value <= largest ? std::string()
+                                          : name + " is " + std::to_string(value) +
+                                                ", expected 0 to " + std::to_string(largest);
+  };
+  const auto of_text = [](const std::string& name, const std::string& text, std::size_t largest) {
+    return text.size() <= largest ? std::string()
+                                  : name + " has " + std::to_string(text.size()) +
+                                        " bytes, expected at most " + std::to_string(largest);
+  };
+  const auto of_number = [](const std::string& name, double value) {
+    return std::isfinite(static_cast<float>(value)) ? std::string()
+                                                    : name + " is no finite number of 32 bits";
+  };
+  for (const std::string& problem :
+       {of_code("sform_code", facts.sform_code, largest_code),
+        of_code("qform_code", facts.qform_code, largest_code),
+        of_code("xyzt_units", facts.xyzt_units, largest_units),
+        of_code("intent_code", facts.intent_code, largest_code),
+        of_text("intent_name", facts.intent_name, name_bytes),
+        of_text("description", facts.description, description_bytes),
+        of_number("cal_min", facts.cal_min), of_number("cal_max", facts.cal_max),
+        of_number("time_step", facts.time_step)}) {
+    if (!problem.empty()) return "NIfTI header: " + problem;
+  }
+  return {};
+}
+
 void write_fact_attributes(const h5::Object& dataset, const NiftiFacts& facts) {
+  if (const std::string problem = facts_problem(facts); !problem.empty()) dataset.fail(problem);
   const auto write_code = [&](const char* name, int value) {
     h5::write_scalar_attribute(dataset, prefix + name, static_cast<std::int64_t>(value));
   };
@@ -69,14 +102,14 @@ void write_fact_attributes(const h5::Object& dataset, const NiftiFacts& facts) {
 std::optional<NiftiFacts> read_fact_attributes(const h5::Object& dataset) {
   if (!h5::has_attribute(dataset, prefix + "sform_code")) return std::nullopt;
   NiftiFacts facts;
-  facts.sform_code = read_code(dataset, "sform_code", 32767);
-  facts.qform_code = read_code(dataset, "qform_code", 32767);
-  facts.xyzt_units = read_code(dataset, "xyzt_units", 255);
-  facts.intent_code = read_code(dataset, "intent_code", 32767);
+  facts.sform_code = read_code(dataset, "sform_code", largest_code);
+  facts.qform_code = read_code(dataset, "qform_code", largest_code);
+  facts.xyzt_units = read_code(dataset, "xyzt_units", largest_units);
+  facts.intent_code = read_code(dataset, "intent_code", largest_code);
   const std::vector<double> p = h5::read_real_attribute(dataset, prefix + "intent_p", 3);
   facts.intent_p = {p[0], p[1], p[2]};
-  facts.intent_name = read_text(dataset, "intent_name", 16);
-  facts.description = read_text(dataset, "descrip", 80);
+  facts.intent_name = read_text(dataset, "intent_name", name_bytes);
+  facts.description = read_text(dataset, "descrip", description_bytes);
   const std::string axes = read_text(dataset, "component_axes", 3);
   try {
     facts.component_axes = parse<Axes>(axes);

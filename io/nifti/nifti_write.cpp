@@ -20,6 +20,7 @@
 #include "io/files/volume_sink.hpp"
 #include "io/nifti/nifti_components.hpp"
 #include "io/nifti/nifti_extension.hpp"
+#include "io/nifti/nifti_facts.hpp"
 #include "io/nifti/nifti_grid.hpp"
 #include "io/nifti/nifti_header.hpp"
 #include "io/nifti/nifti_runs.hpp"
@@ -30,8 +31,11 @@ constexpr std::int64_t largest_dim_1 = 32767;  // of NIfTI-1
 
 /// Facts of the file: those of the array or the defaults. ITK turns displacements of the intent
 /// DISPVECT from RAS to LPS, whatever the header says.
-NiftiFacts facts_of(const ArrayHeader& array) {
+NiftiFacts facts_of(const std::string& path, const ArrayHeader& array) {
   NiftiFacts facts = array.nifti.value_or(default_nifti_facts(array.components));
+  if (const std::string problem = facts_problem(facts); !problem.empty()) {
+    throw IoError(path, "", problem);
+  }
   if (array.is_itk_field) facts.intent_code = NIFTI_INTENT_VECTOR;
   if (facts.component_axes == Axes::lps && facts.intent_code == nifti_displacement_intent) {
     facts.intent_code = NIFTI_INTENT_VECTOR;
@@ -52,7 +56,7 @@ class NiftiSink : public VolumeSink {
       : path_(path),
         grid_(grid),
         array_(array),
-        facts_(facts_of(array)),
+        facts_(facts_of(path, array)),
         options_(options),
         is_temporal_(is_temporal),
         map_(make_map()),

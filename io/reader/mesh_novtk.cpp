@@ -1,6 +1,6 @@
 /// @file mesh_novtk.cpp
 /// In place of mesh_vtk.cpp where VTK was missing when this was built.
-#include <tetwarp/error.hpp>
+#include <tetwarp/missing_library.hpp>
 
 #include "io/reader/image_readers.hpp"
 #include "io/reader/mesh_readers.hpp"
@@ -8,9 +8,9 @@
 namespace tetwarp {
 
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions&) {
-  throw IoError(path, "",
-                "this build cannot read VTK's meshes; install libvtk9-dev and build again, or "
-                "convert to VTKHDF of type UnstructuredGrid");
+  throw MissingLibrary(path, "VTK",
+                       "this build cannot read VTK's meshes; install libvtk9-dev and build "
+                       "again, or convert to VTKHDF of type UnstructuredGrid");
 }
 
 std::vector<Point3> read_vtk_points(const std::string& path) {
@@ -26,15 +26,15 @@ ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& 
 }
 
 CoarseMesh coarsen_by_vtk(const std::string& path, double) {
-  throw IoError(path, "",
-                "this build cannot make coarser surfaces; install libvtk9-dev and build again, or "
-                "name a coarser surface by \"mesh\"");
+  throw MissingLibrary(path, "VTK",
+                       "this build cannot make coarser surfaces; install libvtk9-dev and build "
+                       "again, or name a coarser surface by \"mesh\"");
 }
 
 ForeignImage read_vtk_image(const std::string& path) {
-  throw IoError(path, "",
-                "this build cannot read .vti; install libvtk9-dev and build again, or convert to "
-                "VTKHDF of type ImageData");
+  throw MissingLibrary(path, "VTK",
+                       "this build cannot read .vti; install libvtk9-dev and build again, or "
+                       "convert to VTKHDF of type ImageData");
 }
 
 void read_vtk_samples(const std::string& path,

@@ -13,8 +13,7 @@
 
 namespace tetwarp {
 
-/// One reader per library; in a build without the library it throws an IoError that names the
-/// library.
+/// One reader per library; in a build without the library it throws MissingLibrary.
 ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options);
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options);
 

@@ -15,7 +15,7 @@
 #include <exception>
 #include <fstream>
 #include <new>
-#include <tetwarp/error.hpp>
+#include <tetwarp/missing_library.hpp>
 
 #include "io/child/child_message.hpp"
 #include "io/files/memory.hpp"
@@ -55,9 +55,7 @@ std::FILE* take_output() {
 }
 
 void send_error(MessageWriter& message, const std::string& dataset, const std::string& problem) {
-  message(ChildOutcome::error);
-  message(dataset);
-  message(problem);
+  message(ChildOutcome::error, dataset, problem);
 }
 
 /// The text of an error without the names of file and dataset, which its constructor adds.
@@ -123,6 +121,8 @@ int send_result(int argc, char** argv, const ReaderCalls& calls) {
   MessageWriter message(output);
   try {
     answer(message, {argv + 1, argv + argc}, calls);
+  } catch (const MissingLibrary& error) {
+    message(ChildOutcome::missing_library, error.library(), problem_of(error));
   } catch (const IoError& error) {
     send_error(message, error.dataset(), problem_of(error));
   } catch (const std::bad_alloc&) {

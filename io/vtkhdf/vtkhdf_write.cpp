@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <tetwarp/io.hpp>
 
+#include "io/files/sink_checks.hpp"
 #include "io/image/image_write.hpp"
 #include "io/image/vti_write.hpp"
 #include "io/nifti/nifti_write.hpp"
@@ -111,12 +112,14 @@ void TemporalVolumeWriter::append(double time, const std::vector<const Volume*>&
                     "name, grid, type or components differ from the first step's");
     }
   }
+  check_time(state.path, time);
   state.file->begin_step(time);
   write_all(*state.file, volumes);
 }
 
 void TemporalVolumeWriter::repeat(double time) {
   if (!state_->file) throw IoError(state_->path, "", "no step to repeat");
+  check_time(state_->path, time);
   state_->file->repeat_step(time);
 }
 
@@ -127,6 +130,7 @@ WrittenFile TemporalVolumeWriter::finish() {
 }
 
 struct BlockVolumeWriter::State {
+  std::string path;
   std::unique_ptr<VolumeSink> file;
 };
 
@@ -139,23 +143,23 @@ BlockVolumeWriter::BlockVolumeWriter(const std::string& path,
   const h5::Silence silence;
   if (has_nifti_name(path)) {
     check_compression(path, options);
-    state_.reset(new State{make_nifti_sink(path, grid, arrays, options, is_temporal)});
+    state_.reset(new State{path, make_nifti_sink(path, grid, arrays, options, is_temporal)});
     return;
   }
   if (has_image_name(path)) {
     check_compression(path, options);
-    state_.reset(new State{make_image_sink(path, grid, arrays, options, is_temporal)});
+    state_.reset(new State{path, make_image_sink(path, grid, arrays, options, is_temporal)});
     return;
   }
   if (has_vtk_image_name(path)) {
-    state_.reset(new State{make_vti_sink(path, grid, arrays, options, is_temporal)});
+    state_.reset(new State{path, make_vti_sink(path, grid, arrays, options, is_temporal)});
     return;
   }
   const std::vector<Edges> edges =
       chunks == ChunkShape::rows ? row_chunks(grid, arrays)
                                  : std::vector<Edges>(arrays.size(), block_step(grid, arrays));
-  state_.reset(
-      new State{std::make_unique<ImageFile>(path, grid, arrays, edges, options, is_temporal)});
+  state_.reset(new State{
+      path, std::make_unique<ImageFile>(path, grid, arrays, edges, options, is_temporal)});
 }
 
 BlockVolumeWriter::BlockVolumeWriter(BlockVolumeWriter&&) noexcept = default;
@@ -167,11 +171,13 @@ BlockVolumeWriter::~BlockVolumeWriter() {
 
 void BlockVolumeWriter::begin_step(double time) {
   const h5::Silence silence;
+  check_time(state_->path, time);
   state_->file->begin_step(time);
 }
 
 void BlockVolumeWriter::repeat_step(double time) {
   const h5::Silence silence;
+  check_time(state_->path, time);
   state_->file->repeat_step(time);
 }
 

@@ -9,6 +9,7 @@
 #include <tetwarp/scene_io.hpp>
 #include <utility>
 
+#include "io/files/sink_checks.hpp"
 #include "io/h5/h5_write.hpp"
 #include "io/h5/value_names.hpp"
 #include "io/vtkhdf/vtkhdf_cells.hpp"
@@ -33,6 +34,7 @@ void check_arguments(const std::string& path,
                   std::to_string(times.size()) + " times for " +
                       std::to_string(displacements.size()) + " displacements, expected as many");
   }
+  for (const double time : times) check_time(path, time);
   for (std::size_t step = 0; step < displacements.size(); ++step) {
     const std::string problem = "step " + std::to_string(step);
     if (displacements[step].size() != mesh.rest_positions.size()) {

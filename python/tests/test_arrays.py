@@ -92,6 +92,18 @@ def test_results_outlive_what_made_them(volume, mesh, twisted):
     assert np.array_equal(samples, volume.array)
 
 
+@pytest.mark.skipif(np.lib.NumpyVersion(np.__version__) < "2.0.0", reason="NumPy 1 asks otherwise")
+def test_volumes_and_fields_are_arrays_without_a_copy(volume, mesh):
+    field = tetwarp.jacobian_determinant(*mesh, mesh.points, reference=volume)
+    for value, array in ((volume, volume.array), (field, field.values)):
+        assert np.shares_memory(np.asarray(value), array)
+        assert np.shares_memory(np.asarray(value, array.dtype, copy=False), array)
+        assert not np.shares_memory(np.array(value, copy=True), array)
+        assert np.asarray(value, np.float64).dtype == np.float64
+        with pytest.raises(ValueError, match="copy: a conversion from float32"):
+            np.asarray(value, np.float64, copy=False)
+
+
 def test_arrays_of_the_library_are_not_copied():
     samples = tetwarp.phantom(shape=(20, 24, 32)).array
 
@@ -150,6 +162,8 @@ def _warp(source, mesh, **changes):
     ("out", np.zeros((3, 3, 3), np.float32), r"out: expected shape \(20, 24, 32\) of float32"),
     ("out", np.zeros((20, 24, 32)), "out: expected .* of float32, got .* of float64"),
     ("out", [1], "out: expected an array of float32 to write to"),
+    ("out", np.zeros(4 * 15360 + 1, np.uint8)[1:].view(np.float32).reshape(20, 24, 32),
+     "out: expected an array whose numbers are aligned"),
     ("out", np.zeros((20, 24, 64), np.float32)[..., ::2], "out: expected an array in C order"),
     ("spacing", (1, 1, 1), "volume: a Volume has a grid; leave out spacing"),
     ("threads", -1, "threads"),
@@ -193,6 +207,16 @@ def test_positions_must_be_finite(volume, mesh):
             _warp(volume, mesh, **{name: broken})
 
 
+def test_a_default_value_is_not_rounded(volume, mesh):
+    labels = np.zeros(volume.shape, np.int64)
+    for value in (2**53, -2**53, 2**63 - 1, -2**63, np.int64(7)):
+        result = tetwarp.warp(labels, *mesh, mesh.points + 1e4, interpolator="nearest",
+                              default_value=value)
+        assert (result.volume == value).all()
+    with pytest.raises(ValueError, match="default_value: expected a number that float64 holds"):
+        _warp(labels, mesh, interpolator="nearest", default_value=2**53 + 1)
+
+
 def test_forward_fields_are_on_the_grid_of_the_source(volume, mesh):
     with pytest.raises(ValueError, match="outputs: 'forward' is on the grid of the source"):
         _warp(volume, mesh, outputs="forward", reference=tetwarp.Grid((3, 3, 3)))
@@ -205,6 +229,10 @@ def test_outputs_must_be_writable_and_apart_from_sources(volume, mesh):
         _warp(volume, mesh, out=out)
     with pytest.raises(ValueError, match="out: shares memory with a source"):
         _warp(volume, mesh, out=volume.array)
+    memory = np.concatenate([mesh.points.ravel(), np.zeros(20 * 24 * 32)])
+    with pytest.raises(ValueError, match="out: shares memory with deformed"):
+        _warp(np.ones(volume.shape), mesh, deformed=memory[:mesh.points.size].reshape(-1, 3),
+              out=memory[5:5 + volume.array.size].reshape(volume.shape))
 
 
 @pytest.mark.parametrize("keywords, text", [

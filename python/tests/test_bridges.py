@@ -1,6 +1,7 @@
 """Images and meshes of other packages, as far as these are installed."""
 
 import sys
+import types
 
 import numpy as np
 import pytest
@@ -101,3 +102,29 @@ def test_other_cells_are_no_mesh():
 
     with pytest.raises(ValueError, match="mesh: expected tetrahedra of four or ten.* found cells of wedge"):
         tetwarp.mesh_from(other)
+
+
+def test_other_things_than_images_and_volumes_are_named(volume, mesh):
+    nibabel = pytest.importorskip("nibabel")
+    sitk = pytest.importorskip("SimpleITK")
+    flat = nibabel.Nifti1Image(np.zeros((4, 5), np.float32), np.eye(4))
+    slices = sitk.Image([4, 5], sitk.sitkFloat32)
+
+    for image in (flat, slices):
+        with pytest.raises(ValueError, match="image: expected an image of three"):
+            tetwarp.volume_from(image, axes="RAS")
+        with pytest.raises(ValueError, match="reference: expected an image of three"):
+            tetwarp.warp(volume, *mesh, mesh.points, reference=image)
+        with pytest.raises(ValueError, match="volume: expected samples, got an image; tetwarp.volu"):
+            tetwarp.lattice_mesh(image)
+    for call in (tetwarp.to_nibabel, tetwarp.to_sitk):
+        with pytest.raises(ValueError, match="volume: expected a Volume, got ndarray"):
+            call(volume.array, axes="RAS")
+    with pytest.raises(ValueError, match="field: expected a Field, got Volume"):
+        tetwarp.to_sitk_transform(volume, axes="RAS")
+
+
+def test_numbers_of_nodes_are_not_cut():
+    cells = {"tetra": np.array([(0, 1, 2, 2**32 + 3)])}
+    with pytest.raises(ValueError, match="mesh: expected numbers of nodes from 0 to 3, found"):
+        tetwarp.mesh_from(types.SimpleNamespace(points=np.eye(4, 3), cells_dict=cells))

@@ -37,6 +37,14 @@ def test_progress_ends_a_step(volume, mesh, twisted):
     assert np.array_equal(again.volume, tetwarp.warp(volume, *mesh, twisted).volume)
 
 
+@pytest.mark.parametrize("answer", [False, np.bool_(False)])
+def test_only_false_of_a_callback_ends_a_step(answer, volume, mesh, twisted):
+    with pytest.raises(tetwarp.Cancelled):
+        tetwarp.warp(volume, *mesh, twisted, progress=lambda fraction: answer)
+    for other in (None, True, 0, "", np.bool_(True)):
+        tetwarp.warp(volume, *mesh, twisted, progress=lambda fraction, it=other: it)
+
+
 def test_an_exception_of_the_callback_arrives(volume, mesh, twisted):
     def fail(fraction):
         raise ZeroDivisionError("mine")

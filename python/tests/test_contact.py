@@ -105,7 +105,7 @@ def test_wrong_rows_are_named():
     rows = dict(jacobian=np.eye(1, 6), target=[0.5])
     with pytest.raises(ValueError, match="bilateral: 'goal' is not one of jacobian, target"):
         tetwarp.ContactProblem(**GLOBAL, bilateral=dict(rows, goal=[1]))
-    with pytest.raises(ValueError, match="rolling: expected jacobian"):
+    with pytest.raises(ValueError, match="rolling: expected a dict with jacobian"):
         tetwarp.ContactProblem(**GLOBAL, rolling=dict(contact=[0]))
     with pytest.raises(ValueError, match="bilateral.compliance"):
         tetwarp.solve_contacts(**GLOBAL, bilateral=dict(rows, compliance=[-1]))
@@ -143,7 +143,8 @@ def test_a_callback_ends_a_solve_and_its_errors_arrive():
     (dict(system=np.zeros((2, 2, 2))), "system: expected a sparse matrix"),
     (dict(jacobian=([1.0], [0, 1], [0, 1], (1, 1))), "jacobian.indices: expected 1, got 2"),
     (dict(jacobian=([1.0], [0], [0, 1], (3, 6))), "jacobian.indptr: expected 4, got 2"),
-    (dict(adhesion=dict(area=[1])), "adhesion: expected time_step"),
+    (dict(adhesion=dict(time_step=1, stifness=[1])), "adhesion: 'stifness' is not one of time_step"),
+    (dict(adhesion=dict(area=[1])), "adhesion: expected a dict with time_step"),
     (dict(law="square"), "law: 'square' is not one of cone, pyramid"),
     (dict(tolerance=-1), "tolerance"),
 ])

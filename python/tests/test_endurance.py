@@ -143,3 +143,25 @@ interpreters.run_string(number, text) if hasattr(interpreters, "run_string") els
 
     assert done.returncode == 0, done.stderr
     assert "refused:" in done.stdout and "interpreter" in done.stdout
+
+
+def test_a_program_ends_while_daemon_threads_compute(tmp_path):
+    """Python ends such threads where they take the interpreter's lock."""
+    code = tmp_path / "code.py"
+    code.write_text("""
+import threading, time, tetwarp
+volume = tetwarp.phantom(shape=(20, 24, 32))
+mesh = tetwarp.lattice_mesh(volume, cells=4)
+moved = tetwarp.deform(*mesh)
+def warp(progress):
+    while True:
+        tetwarp.warp(volume, *mesh, moved, progress=progress)
+for progress in (None, None, lambda fraction: None):
+    threading.Thread(target=warp, args=(progress,), daemon=True).start()
+time.sleep(0.1)
+""")
+
+    for _ in range(3):
+        done = subprocess.run([sys.executable, code], text=True, capture_output=True, timeout=60,
+                              env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False)
+        assert done.returncode == 0, done.stderr

@@ -128,3 +128,32 @@ def test_points_in_hexahedra_have_the_owners_of_the_warp(volume):
     field = tetwarp.displacement_field(*mesh, bent, reference=volume)
     moved = (rest - centers).reshape(field.values.shape)
     assert np.abs(moved - field.values)[field.mask].max() < 1e-3  # float32 of positions in 1e2 mm
+
+
+@pytest.mark.parametrize("exponent", [-300, -40, 40, 300])
+def test_a_power_of_two_of_all_lengths_changes_no_bit(exponent, volume, mesh, twisted):
+    scale = 2.0**exponent
+    affine = volume.affine * ((scale,), (scale,), (scale,), (1,))
+    wanted = ("owner", "jacobian", "strain")
+    points = volume.grid.points().reshape(-1, 3)[::97]
+
+    warped = tetwarp.warp(volume.array, scale * mesh.points, mesh.cells, scale * twisted,
+                          affine=affine, outputs=wanted)
+    moved, owners = tetwarp.transform_points(
+        scale * points, scale * mesh.points, mesh.cells, scale * twisted, return_owners=True)
+
+    expected = tetwarp.warp(volume, *mesh, twisted, outputs=wanted)
+    assert np.array_equal(warped.volume, expected.volume)
+    for name in wanted:
+        assert np.array_equal(warped.extras[name], expected.extras[name]), name
+    there, same_owners = tetwarp.transform_points(points, *mesh, twisted, return_owners=True)
+    assert np.array_equal(owners, same_owners)
+    assert np.array_equal(moved / scale, there, equal_nan=True)
+
+
+def test_points_that_are_no_places_have_no_owner(mesh, twisted, volume):
+    odd = [(np.nan, 0, 0), (0, np.inf, 0), (0, 0, -np.inf), (1e300, 0, 0), (-1e308, 1e308, 5)]
+    for reference in (None, volume):
+        moved, owners = tetwarp.transform_points(
+            odd, *mesh, twisted, reference=reference, return_owners=True)
+        assert np.isnan(moved).all() and (owners == -1).all()

@@ -72,7 +72,7 @@ def test_the_gaussian_rule_takes_the_largest_weight(box, sigma, cutoff):
 def test_rules_name_what_is_wrong(box):
     for options, message in [
         ({"label_rule": "most"}, "label_rule"),
-        ({"label_rule": "gaussian", "label_gaussian": 2}, "label_gaussian: expected a pair"),
+        ({"label_rule": "gaussian", "label_gaussian": 2}, "label_gaussian: expected 2 numbers, got 1"),
         ({"label_rule": "gaussian", "label_gaussian": (1, "x")}, "label_gaussian"),
         ({"label_rule": "gaussian", "label_gaussian": (4, 3)},
          "^label_gaussian: .*at most 8 voxels"),

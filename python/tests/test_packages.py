@@ -13,8 +13,9 @@ import tetwarp
 def lacking(monkeypatch):
     """As a wheel: no VTK, no GDCM."""
     def refuse(path, *_):
-        kind = "DICOM" if str(path).endswith(".dcm") else "VTK's files"
-        raise tetwarp.IoError(f"{path}: this build cannot read {kind}; install it and build again")
+        error = tetwarp._core.MissingLibrary(f"{path}: this build cannot read it")
+        error.library = "GDCM" if str(path).endswith(".dcm") else "VTK"
+        raise error
 
     for name in ("MeshFile", "read_surface", "kind_of"):
         monkeypatch.setattr(tetwarp._core, name, refuse)
@@ -79,6 +80,28 @@ def test_the_package_that_is_missing_is_named(name, module, pip, tmp_path, lacki
     text = f"{name}: this build .*; in Python: python3 -m pip install {pip}$"
     with pytest.raises(tetwarp.IoError, match=text):
         tetwarp.read(tmp_path / name)
+
+
+def test_the_library_that_a_reader_lacks_arrives(tmp_path, monkeypatch):
+    """A program in place of tetwarp-read answers as one that was built without the library."""
+    reader = tmp_path / "reader"
+    reader.write_text(f"""#!{sys.executable} -S
+import struct, sys
+texts = b"VTK", b"this build cannot read it"
+sys.stdout.buffer.write(b"\\2" + b"".join(struct.pack("<Q", len(t)) + t for t in texts))
+""")
+    reader.chmod(0o755)
+    monkeypatch.setenv("TETWARP_READER", str(reader))
+    for module in ("meshio", "vtkmodules.vtkIOXML"):
+        monkeypatch.setitem(sys.modules, module, None)
+    for name, kind in (("a.vtu", "UnstructuredGrid"), ("a.vti", "ImageData")):
+        (tmp_path / name).write_text(f'<VTKFile type="{kind}">')
+
+        with pytest.raises(tetwarp.IoError, match=f"{name}: this build cannot read it; in Python: "):
+            tetwarp.read(tmp_path / name)
+    with pytest.raises(tetwarp._core.MissingLibrary) as caught:
+        tetwarp._core.MeshFile(str(tmp_path / "a.vtu"), 0, "ras")
+    assert caught.value.library == "VTK" and isinstance(caught.value, OSError)
 
 
 def test_damaged_files_are_named(tmp_path, lacking):

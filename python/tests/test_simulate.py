@@ -184,7 +184,7 @@ def test_the_image_of_a_body_is_shared_and_outlives_the_simulator(orange):
     (3, ValueError, "scene: expected a dict or the path of a file, got int"),
     ({"tetwarp_scene": 1}, tetwarp.IoError, "scene"),
     ("/no/such/scene.json", tetwarp.IoError, "scene.json"),
-    ({"tetwarp_scene": {1}}, TypeError, "scene: set is no value of JSON"),
+    ({"tetwarp_scene": {1}}, ValueError, "scene: set is no value of JSON"),
 ])
 def test_errors_name_what_is_wrong(scene, error, text):
     with pytest.raises(error, match=text):

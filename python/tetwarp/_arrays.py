@@ -14,6 +14,7 @@ from . import _core
 PIXEL_TYPES = (
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64",
 )
+_NATIVE_PIXELS = {np.dtype(name) for name in PIXEL_TYPES}
 _NO_CELLS = {n: np.empty((0, n), np.int32) for n in (4, 6, 8)}
 _SPLIT = "tetwarp.split_ten_nodes(cells)"
 _FLOAT64, _INT32 = np.dtype(np.float64), np.dtype(np.int32)
@@ -52,15 +53,31 @@ def check_host(value: Any, name: str, reason: str = "") -> None:
 
 def array_of(value: Any, name: str) -> np.ndarray:
     """An array of another library (PyTorch, JAX, CuPy) in place, by DLPack; anything else as NumPy
-    takes it.
+    takes it, but for masked elements, whose mask would be lost.
     """
+    if type(value) is np.ndarray:
+        return value
     if not is_foreign(value):
-        return np.asarray(value)
+        if np.ma.is_masked(value):
+            raise ValueError(f"{name}: has masked elements; use .filled(value)")
+        try:
+            return np.asarray(value)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ValueError(f"{name}: expected an array: {error}") from None
     check_host(value, name)
     try:
         return np.from_dlpack(value)
     except (BufferError, RuntimeError, TypeError) as error:
         raise ValueError(f"{name}: cannot be read by DLPack: {error}") from None
+
+
+def as_array(array: np.ndarray, dtype: Any, copy: bool | None) -> np.ndarray:
+    """What `__array__` of something that holds an array returns."""
+    if copy:
+        return np.array(array, dtype=dtype)
+    if copy is False and dtype is not None and np.dtype(dtype) != array.dtype:
+        raise ValueError(f"copy: a conversion from {array.dtype} to {np.dtype(dtype)} makes one")
+    return np.asarray(array, dtype=dtype)
 
 
 def _same(array: np.ndarray) -> np.ndarray:
@@ -98,11 +115,13 @@ def samples_of(value: Any, name: str) -> np.ndarray:
     """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
     if isinstance(value, (str, os.PathLike)):
         raise ValueError(f"{name}: expected samples, got the name {value!r}; tetwarp.read reads it")
+    if hasattr(value, "dataobj") or hasattr(value, "GetPixelIDTypeAsString"):
+        raise ValueError(f"{name}: expected samples, got an image; tetwarp.volume_from takes it")
     array = array_of(value, name)
-    check_samples(name, array.shape, array.dtype.newbyteorder("=").name)
-    if not array.dtype.isnative:
-        array = array.astype(array.dtype.newbyteorder("="))
-    return np.ascontiguousarray(array)
+    dtype = array.dtype if array.dtype.isnative else array.dtype.newbyteorder("=")
+    is_pixel = dtype in _NATIVE_PIXELS  # whose name takes longer
+    check_samples(name, array.shape, PIXEL_TYPES[0] if is_pixel else dtype.name)
+    return in_order(array, dtype)
 
 
 def renamed(error: Exception, names: dict[str, str]) -> Exception:
@@ -111,34 +130,87 @@ def renamed(error: Exception, names: dict[str, str]) -> Exception:
     return type(error)(f"{names[name]}:{rest}") if colon and name in names else error
 
 
+def _is_unicode(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:  # of a name that the system has in another encoding
+        return False
+    return True
+
+
+def _is_text(value: Any) -> bool:
+    """Whether the library takes it as a text: one of Unicode, without a zero, which would end it."""
+    return isinstance(value, str) and "\0" not in value and _is_unicode(value)
+
+
 def word_of(value: Any, name: str) -> str:
     """A word; which ones there are is checked by the library."""
-    if not isinstance(value, str):
+    if not _is_text(value):
         raise ValueError(f"{name}: expected a word, got {value!r}")
     return value
 
 
-def number_of(value: Any, name: str) -> float:
-    """A number."""
+def path_of(value: Any, name: str = "path") -> str:
+    """The name of a file."""
+    path = os.fsdecode(value) if isinstance(value, (bytes, os.PathLike)) else value
+    if not path or not _is_text(path):
+        raise ValueError(f"{name}: expected the name of a file in UTF-8, got {value!r}")
+    return path
+
+
+def check_callback(value: Any, name: str) -> None:
+    """Raises ValueError for what is neither a function nor None."""
+    if value is not None and not callable(value):
+        raise ValueError(f"{name}: expected a function, got {value!r}")
+
+
+def check_kind(value: Any, kind: type, name: str) -> None:
+    """Raises ValueError for what is not of a class of this package."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name}: expected a {kind.__name__}, got {type(value).__name__}")
+
+
+def list_of(values: Any, name: str, what: str) -> list[Any]:
+    """The items of a list or of anything that gives them."""
     try:
+        return list(values)
+    except TypeError:
+        raise ValueError(f"{name}: expected {what}, got {values!r}") from None
+
+
+def number_of(value: Any, name: str) -> float:
+    """A number: no text, and no complex one, whose imaginary part would be lost."""
+    if type(value) is float:
+        return value
+    if isinstance(value, (np.ndarray, np.generic)) and value.ndim == 0:
+        value = value.item()
+    try:
+        if isinstance(value, (np.ndarray, str, bytes, bytearray)):
+            raise TypeError
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name}: expected a number, got {value!r}") from None
 
 
 def pair_of(value: Any, name: str) -> tuple[float, float]:
     """Two numbers."""
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise ValueError(f"{name}: expected a pair of numbers, got {value!r}")
-    return number_of(value[0], name), number_of(value[1], name)
+    if type(value) is tuple and len(value) == 2 and type(value[0]) is type(value[1]) is float:
+        return value
+    first, second = numbers_of(value, name, 2)
+    return float(first), float(second)
 
 
-def integer_of(value: Any, name: str) -> int:
-    """A whole number; one with a fraction is refused, not cut."""
+def integer_of(value: Any, name: str, most: int = 2**31 - 1) -> int:
+    """A whole number up to `most`, and not below its negative; one with a fraction is refused, not
+    cut.
+    """
     try:
-        return operator.index(value)
+        number = operator.index(value)
     except TypeError:
         raise ValueError(f"{name}: expected a whole number, got {value!r}") from None
+    if not -most <= number <= most:
+        raise ValueError(f"{name}: expected a whole number up to {most}, got {number}")
+    return number
 
 
 def integers_of(value: Any, name: str, dtype: Any = np.int32) -> np.ndarray:
@@ -149,7 +221,7 @@ def integers_of(value: Any, name: str, dtype: Any = np.int32) -> np.ndarray:
     if array.size and max(int(array.max()), -int(array.min())) > np.iinfo(dtype).max:
         raise ValueError(f"{name}: expected numbers up to {np.iinfo(dtype).max}, found "
                          f"{array.min()} to {array.max()}")
-    return np.ascontiguousarray(array, dtype=dtype)
+    return in_order(array, dtype)
 
 
 def nodes_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
@@ -168,26 +240,40 @@ def check_finite(points: np.ndarray, name: str) -> None:
 
 
 def _is_plain(value: Any, dtype: np.dtype) -> bool:
-    """Whether it is an array of NumPy of this type in C order."""
-    return type(value) is np.ndarray and value.dtype is dtype and value.flags.c_contiguous
+    """Whether it is an array of NumPy of this type in C order, each number where the processor wants
+    it.
+    """
+    if type(value) is not np.ndarray or value.dtype is not dtype:
+        return False
+    flags = value.flags
+    return flags.c_contiguous and flags.aligned
 
 
-def _floats_of(value: Any, name: str) -> np.ndarray:
-    """Numbers as float64 in C order."""
-    array = array_of(value, name) if is_foreign(value) else value
-    try:
-        array = np.asarray(array)
-        if not np.can_cast(array.dtype, np.float64, "same_kind"):
-            raise TypeError
-        return np.ascontiguousarray(array, dtype=np.float64)
-    except (TypeError, ValueError):
-        hint = "; *mesh gives nodes and cells of a mesh" if hasattr(value, "cells") else ""
-        raise ValueError(f"{name}: expected an array of numbers of shape (n, 3){hint}") from None
+def in_order(array: np.ndarray, dtype: Any = None) -> np.ndarray:
+    """An array in C order, each number where the processor wants it; copied only if it is not."""
+    flags = array.flags
+    if flags.c_contiguous and flags.aligned and array.ndim and type(array) is np.ndarray and (
+            dtype is None or array.dtype == dtype):
+        return array
+    result = np.ascontiguousarray(array, dtype=dtype)
+    return result if result.flags.aligned else result.copy()
+
+
+def floats_of(value: Any, name: str) -> np.ndarray:
+    """Real numbers as float64 in C order; copied only if they are not."""
+    if _is_plain(value, _FLOAT64):
+        return value
+    if hasattr(value, "cells"):
+        raise ValueError(f"{name}: expected an array of numbers; *mesh gives nodes and cells")
+    array = array_of(value, name)
+    if array.dtype.kind not in "biuf":
+        raise ValueError(f"{name}: expected an array of numbers, got {array.dtype}")
+    return in_order(array, np.float64)
 
 
 def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Positions of shape (n, 3), float64 in C order; copied only if they are not."""
-    array = value if _is_plain(value, _FLOAT64) else _floats_of(value, name)
+    array = floats_of(value, name)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name}: expected shape (n, 3), x y z per row, got {array.shape}")
     if count is not None and array.shape[0] != count:
@@ -211,7 +297,7 @@ def _integers(array: np.ndarray, name: str, node_count: int, least: int = 0) -> 
     if array.dtype.kind not in "iu":
         raise ValueError(f"{name}: expected integers, numbers of nodes, got {array.dtype}")
     check_indices(array, name, node_count, least)  # before they are cut
-    return np.ascontiguousarray(array, dtype=np.int32)
+    return in_order(array, np.int32)
 
 
 def _cells_of_one_kind(value: Any, name: str, node_count: int) -> np.ndarray:
@@ -238,7 +324,7 @@ def given_cells_of(
     value: Any, name: str, node_count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """As curved_cells_of(); numbers of nodes that are int32 are not checked."""
-    if isinstance(value, (tuple, list)) and len(value) == 2 and np.ndim(value[0]) == 2:
+    if isinstance(value, (tuple, list)) and len(value) == 2 and array_of(value[0], name).ndim == 2:
         parts = [_cells_of_one_kind(part, name, node_count) for part in value]
         if parts[0].shape[1] not in (4, 10) or parts[1].shape[1] != 8:
             raise ValueError(
@@ -290,11 +376,7 @@ def with_remedy(error: Exception) -> Exception:
 
 def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     """Numbers as a flat float64 array in C order."""
-    plain = array_of(value, name) if is_foreign(value) else value
-    try:
-        array = np.ascontiguousarray(plain, dtype=np.float64).reshape(-1)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected an array of numbers") from None
+    array = floats_of(value, name).reshape(-1)
     if count is not None and array.size != count:
         raise ValueError(f"{name}: expected {count} numbers, got {array.size}")
     return array
@@ -302,6 +384,8 @@ def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
 
 def vector_of(value: Any, name: str) -> tuple[float, float, float]:
     """Three numbers x, y, z."""
+    if type(value) is tuple and len(value) == 3 and {*map(type, value)} <= {float, int}:
+        return number_of(value[0], name), number_of(value[1], name), number_of(value[2], name)
     numbers = numbers_of(value, name)
     if numbers.size != 3:
         raise ValueError(f"{name}: expected three numbers x, y, z, got {numbers.size}")
@@ -325,6 +409,8 @@ def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarra
         raise ValueError(f"{name}: expected shape {shape} of {dtype}, got {describe(value)}")
     if not value.flags.c_contiguous:
         raise ValueError(f"{name}: expected an array in C order, got strides {value.strides}")
+    if not value.flags.aligned:
+        raise ValueError(f"{name}: expected an array whose numbers are aligned in memory")
     if not value.flags.writeable:
         raise ValueError(f"{name}: expected a writable array")
     return value

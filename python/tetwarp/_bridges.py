@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import curved_cells_of, nodes_of
+from ._arrays import check_kind, curved_cells_of, nodes_of
 from ._fields import Field
 from ._grid import Grid, reference_grid
 from ._mesh import Mesh, joined_cells
@@ -60,14 +60,15 @@ def volume_from(image: Any, *, axes: str) -> Volume:
         `image` is of another kind, or `axes` another word.
     """
     if hasattr(image, "dataobj"):
+        grid = reference_grid(image, "image")
         array = np.asarray(image.dataobj)
         if array.ndim == 5 and array.shape[3] == 1:  # vectors of NIfTI
             array = array[:, :, :, 0]
-        return Volume(_rows_first(array), turned(reference_grid(image), signs_of(axes, "RAS")))
+        return Volume(_rows_first(array), turned(grid, signs_of(axes, "RAS")))
     if hasattr(image, "GetPixelIDTypeAsString"):
         sitk = package("SimpleITK", "volume_from", "SimpleITK")
-        return Volume(sitk.GetArrayFromImage(image),
-                      turned(reference_grid(image), signs_of(axes, "LPS")))
+        grid = turned(reference_grid(image, "image"), signs_of(axes, "LPS"))
+        return Volume(sitk.GetArrayFromImage(image), grid)
     raise ValueError(
         f"image: expected an image of nibabel or SimpleITK, got {type(image).__name__}"
     )
@@ -82,6 +83,7 @@ def to_nibabel(volume: Volume, *, axes: str) -> Any:
         nibabel is not installed.
     """
     nibabel = package("nibabel", "to_nibabel", "nibabel")
+    check_kind(volume, Volume, "volume")
     grid = turned(volume.grid, signs_of(axes, "RAS"))
     array = volume.array.swapaxes(0, 2)
     return nibabel.Nifti1Image(array, grid.affine, dtype=array.dtype)
@@ -104,6 +106,7 @@ def to_sitk(volume: Volume, *, axes: str) -> Any:
         SimpleITK is not installed.
     """
     sitk = package("SimpleITK", "to_sitk", "SimpleITK")
+    check_kind(volume, Volume, "volume")
     return _sitk_image(sitk, volume.array, turned(volume.grid, signs_of(axes, "LPS")))
 
 
@@ -119,6 +122,7 @@ def to_sitk_transform(field: Field, *, axes: str) -> Any:
         `field` has not three components.
     """
     sitk = package("SimpleITK", "to_sitk_transform", "SimpleITK")
+    check_kind(field, Field, "field")
     if field.values.ndim != 4 or field.values.shape[3] != 3:
         raise ValueError(f"field: expected displacements, (z, y, x, 3), got {field.values.shape}")
     signs = signs_of(axes, "LPS")
@@ -202,7 +206,7 @@ def mesh_from(mesh: Any) -> Mesh:
             f"{', '.join(others)}"
         )
     points = nodes_of(mesh.points, "mesh")
-    parts = {name: np.reshape(blocks.get(name, ()), (-1, count)).astype(np.int32)
+    parts = {name: np.reshape(blocks.get(name, ()), (-1, count)).astype(np.int64)
              for name, count in (("tetra", 4), ("tetra10", 10), ("hexahedron", 8))}
     tets, ten = parts["tetra"], parts["tetra10"]
     if len(ten):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import integer_of, points_of, triangles_of
+from ._arrays import integer_of, list_of, points_of, triangles_of
 
 
 @dataclass(eq=False)
@@ -77,7 +77,7 @@ def certify(
     Certificate(meets, 1 pairs, the first by time 0.250000000; 1 near pairs)
     """
     starts, ends, triangles = [], [], []
-    for number, surface in enumerate(surfaces):
+    for number, surface in enumerate(list_of(surfaces, "surfaces", "a list of surfaces")):
         name = f"surfaces[{number}]"
         if not isinstance(surface, (tuple, list)) or len(surface) != 3:
             raise ValueError(f"{name}: expected (start, end, triangles)")
@@ -86,7 +86,7 @@ def certify(
         triangles.append(triangles_of(surface[2], f"{name}: triangles", len(starts[-1])))
     found = _core.certify(
         starts, ends, triangles, self=bool(self_intersections),
-        most_intervals=integer_of(most_intervals, "most_intervals"),
+        most_intervals=integer_of(most_intervals, "most_intervals", 2**63 - 1),
         threads=integer_of(threads, "threads"),
     )
     return Certificate(**(found | {"meets": found["meets"].view(bool)}))
@@ -131,7 +131,7 @@ def find_collisions(
     [[0, 1]]
     """
     still = []
-    for number, surface in enumerate(surfaces):
+    for number, surface in enumerate(list_of(surfaces, "surfaces", "a list of surfaces")):
         if not isinstance(surface, (tuple, list)) or len(surface) != 2:
             raise ValueError(f"surfaces[{number}]: expected (points, triangles)")
         still.append((surface[0], surface[0], surface[1]))

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field, fields
-from typing import Any, Callable, NamedTuple
+from typing import Any, Callable, Iterable, NamedTuple
 
 import numpy as np
 
 from . import _core
-from ._arrays import array_of, integer_of, integers_of, number_of, numbers_of, word_of
+from ._arrays import (
+    array_of,
+    check_callback,
+    check_kind,
+    integer_of,
+    integers_of,
+    number_of,
+    numbers_of,
+    word_of,
+)
 
 
 class Csr(NamedTuple):
@@ -53,11 +62,14 @@ def csr_of(value: Any, name: str) -> Csr:
         rows, indices = np.nonzero(dense)
         data, shape = dense[rows, indices], dense.shape
         indptr = np.searchsorted(rows, np.arange(dense.shape[0] + 1))
+    size = integers_of(shape, f"{name}.shape", np.int64)
+    if len(size) != 2:
+        raise ValueError(f"{name}.shape: expected rows and columns, got {shape!r}")
     csr = Csr(
         numbers_of(data, f"{name}.data"),
         integers_of(indices, f"{name}.indices"),
         integers_of(indptr, f"{name}.indptr", np.int64),
-        (int(shape[0]), int(shape[1])),
+        (int(size[0]), int(size[1])),
     )
     if len(csr.data) != len(csr.indices):
         raise ValueError(f"{name}.indices: expected {len(csr.data)}, got {len(csr.indices)}")
@@ -79,16 +91,38 @@ _ROWS = {
 }
 
 
-def _rows_of(rows: dict[str, Any], name: str, allowed: dict[str, bool]) -> dict[str, Any]:
+#: Members of adhesion per contact.
+_ADHESION = (
+    "area", "stiffness", "tangential_stiffness", "intensity", "gap", "energy", "viscosity",
+    "bonding_rate", "saturation_pressure",
+)
+
+
+def _check_members(given: Any, name: str, needed: str, others: Iterable[str]) -> None:
+    """Raises ValueError for what is no dict, lacks the needed member, or has unknown ones."""
+    if not isinstance(given, dict) or needed not in given:
+        raise ValueError(f"{name}: expected a dict with {needed}")
+    for key in given:
+        if key != needed and key not in others:
+            raise ValueError(f"{name}: {key!r} is not one of {needed}, {', '.join(others)}")
+
+
+def _adhesion_of(given: Any) -> dict[str, Any]:
+    """Adhesion of contacts, checked."""
+    _check_members(given, "adhesion", "time_step", _ADHESION)
+    return {
+        name: (number_of if name == "time_step" else numbers_of)(value, f"adhesion.{name}")
+        for name, value in given.items()
+    }
+
+
+def _rows_of(rows: Any, name: str, allowed: dict[str, bool]) -> dict[str, Any]:
     """Rows beyond those of contacts, checked."""
-    if "jacobian" not in rows:
-        raise ValueError(f"{name}: expected jacobian, a matrix")
+    _check_members(rows, name, "jacobian", allowed)
     result: dict[str, Any] = {"jacobian": csr_of(rows["jacobian"], f"{name}.jacobian")}
     for key, value in rows.items():
         if key == "jacobian":
             continue
-        if key not in allowed:
-            raise ValueError(f"{name}: {key!r} is not one of jacobian, {', '.join(allowed)}")
         if allowed[key]:
             result[key] = numbers_of(value, f"{name}.{key}")
         else:
@@ -150,13 +184,7 @@ class ContactProblem:
             if getattr(self, name) is not None:
                 setattr(self, name, _rows_of(getattr(self, name), name, allowed))
         if self.adhesion is not None:
-            if "time_step" not in self.adhesion:
-                raise ValueError("adhesion: expected time_step [s]")
-            self.adhesion = {
-                name: number_of(value, "adhesion.time_step") if name == "time_step"
-                else numbers_of(value, f"adhesion.{name}")
-                for name, value in self.adhesion.items()
-            }
+            self.adhesion = _adhesion_of(self.adhesion)
 
     @property
     def contact_count(self) -> int:
@@ -237,7 +265,7 @@ class ContactSolver:
         self._solver = _core.ContactSolver(
             law=word_of(law, "law"), rule=word_of(rule, "rule"), method=word_of(method, "method"),
             measure=word_of(measure, "measure"), tolerance=number_of(tolerance, "tolerance"),
-            max_sweeps=integer_of(max_sweeps, "max_sweeps"),
+            max_sweeps=integer_of(max_sweeps, "max_sweeps", 2**63 - 1),
             recovery_speed=number_of(recovery_speed, "recovery_speed"),
             max_seconds=number_of(max_seconds, "max_seconds"), backend=word_of(backend, "backend"),
             device=integer_of(device, "device"), threads=integer_of(threads, "threads"),
@@ -250,6 +278,10 @@ class ContactSolver:
         progress: Callable[[float, int], Any] | None = None,
     ) -> ContactSolution:
         """Solves one problem; see solve_contacts()."""
+        check_kind(problem, ContactProblem, "problem")
+        if problem.friction is None and (problem.jacobian or problem.delassus):
+            raise ValueError("friction: expected one number per contact")
+        check_callback(progress, "progress")
         impulse, velocity, body_velocity, bilateral, rolling, text = self._solver.solve(
             problem._core(), progress
         )

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ._arrays import check_kind, list_of
 from ._bridges import package, signs_of, turned
 from ._grid import Grid
 from ._volume import Volume
@@ -38,7 +39,7 @@ def _datasets_of(source: Any, series: str | None) -> list[Any]:
     elif isinstance(source, pydicom.Dataset):
         source = [source]
     datasets = []
-    for item in source:
+    for item in list_of(source, "source", "a folder, files or datasets"):
         if isinstance(item, pydicom.Dataset):
             datasets.append(item)
             continue
@@ -217,6 +218,8 @@ def to_rtdose(volume: Volume, like: Any, *, axes: str) -> Any:
         pydicom is not installed.
     """
     pydicom = package("pydicom", "to_rtdose", "pydicom")
+    check_kind(volume, Volume, "volume")
+    check_kind(like, pydicom.Dataset, "like")
     dose = np.asarray(volume.array, np.float64)
     if dose.ndim != 3 or not np.isfinite(dose).all() or dose.min() < 0:
         raise ValueError("volume: expected finite doses of 0 or more, one per voxel")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import curved_cells_of, maker_of, nodes_of, number_of, points_of
+from ._arrays import as_array, curved_cells_of, maker_of, nodes_of, number_of, points_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._result import WarpResult
@@ -35,9 +35,7 @@ class Field:
     name: str
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
-        if copy:
-            return np.array(self.values, dtype=dtype)
-        return np.asarray(self.values, dtype=dtype)
+        return as_array(self.values, dtype, copy)
 
     def __repr__(self) -> str:
         return f"Field({self.name}, {self.values.shape}, {self.mask.mean():.1%} covered)"
@@ -59,6 +57,9 @@ def _outputs_on(
     grid: Grid, rest: Any, cells: Cells, deformed: Any, names: tuple[str, ...], options: Any
 ) -> WarpResult:
     """Outputs of a warp other than its volume, which is one byte per voxel."""
+    for name in options:
+        if name not in ("backend", "device", "threads"):
+            raise TypeError(f"unexpected keyword argument {name!r}")
     shape = grid.shape if "forward" in names else (1, 1, 1)
     samples = np.zeros(shape, np.uint8)
     source = Volume(samples, Grid(shape, grid.spacing, grid.origin, grid.direction))
@@ -71,7 +72,7 @@ def _field(name: str, title: str, grid: Grid, rest: Any, cells: Cells, deformed:
     result = _outputs_on(grid, rest, cells, deformed, (name, "mask"), options)
     mask = result.extras["mask"].view(bool)
     if name == "forward":  # covered at rest, unlike the mask of the deformed mesh
-        mask = rasterize(rest, cells, reference=grid) >= 0
+        mask = rasterize(rest, cells, reference=grid, **options) >= 0
     return Field(result.extras[name], mask, grid, title)
 
 
@@ -205,7 +206,8 @@ def rasterize(
     20
     """
     grid = _grid_of(reference, shape, spacing, origin, direction, affine)
-    return _outputs_on(grid, points, cells, points, ("owner",), options).extras["owner"]
+    nodes = nodes_of(points, "points")
+    return _outputs_on(grid, nodes, cells, nodes, ("owner",), options).extras["owner"]
 
 
 def transform_points(
@@ -260,7 +262,7 @@ def transform_points(
     end = nodes_of(deformed, "deformed", len(start))
     parts = curved_cells_of(cells, "cells", len(start))
     grid = None if reference is None else reference_grid(reference)._core()
-    moved, owners, straightened = _core.map_points(where, grid, start, *parts, end, inverse)
+    moved, owners, straightened = _core.map_points(where, grid, start, *parts, end, bool(inverse))
     if straightened:
         warnings.warn(f"{straightened} of {len(where)} points move with straight tetrahedra, as the "
                       "curved map of theirs has no inverse there", RuntimeWarning, stacklevel=2)

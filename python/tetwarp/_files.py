@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import Any, Iterator, Sequence
 
 import numpy as np
 
 from . import _core
-from ._arrays import curved_cells_of, integer_of, nodes_of, number_of, triangles_of
+from ._arrays import (
+    curved_cells_of,
+    integer_of,
+    list_of,
+    nodes_of,
+    numbers_of,
+    path_of,
+    samples_of,
+    triangles_of,
+    word_of,
+)
 from ._contact import ContactProblem
 from ._fields import Field
-from ._grid import Grid, grid_from_core
+from ._grid import Grid, grid_from_core, reference_grid
 from ._mesh import Mesh, Surface, joined_cells, split_ten_nodes
-from ._packages import MeshioFile, check_default, is_lacking, read_image, read_surface
+from ._packages import MeshioFile, check_default, read_image, read_surface
 from ._result import WarpResult
 from ._volume import Volume
 
@@ -42,15 +51,13 @@ class MeshFile:
     def __init__(
         self, path: Any, *, rest_step: int = 0, axes: str = "ras", ten_nodes: str = "curved"
     ) -> None:
-        name, step = os.fspath(path), integer_of(rest_step, "rest_step")
-        if ten_nodes not in ("curved", "split"):
+        name, step = path_of(path), integer_of(rest_step, "rest_step", 2**63 - 1)
+        if word_of(ten_nodes, "ten_nodes") not in ("curved", "split"):
             raise ValueError(f"ten_nodes: expected curved or split, got {ten_nodes!r}")
         self._file: Any
         try:
-            self._file = _core.MeshFile(name, step, axes, ten_nodes == "curved")
-        except _core.IoError as error:
-            if not is_lacking(error):
-                raise
+            self._file = _core.MeshFile(name, step, word_of(axes, "axes"), ten_nodes == "curved")
+        except _core.MissingLibrary as error:
             self._file = MeshioFile(name, step, axes, error)
         points, *parts = self._file.mesh()
         cells = joined_cells(*parts)
@@ -60,7 +67,7 @@ class MeshFile:
 
     def step(self, number: int) -> np.ndarray:
         """Deformed positions (n, 3) of a step; negative numbers count from the end."""
-        count = len(self.times)
+        count, number = len(self.times), integer_of(number, "number")
         if not -count <= number < count:
             raise ValueError(f"number: expected a step from 0 to {count - 1}, got {number}")
         return self._file.read_step(number % count)
@@ -99,8 +106,15 @@ def read_header(path: Any) -> VolumeHeader:
 
     Raises IoError as read().
     """
-    header = _core.volume_header(os.fspath(path))
+    header = _core.volume_header(path_of(path))
     return VolumeHeader(**{**header, "grid": grid_from_core(header["grid"])})
+
+
+def _check_unused(owner: str, given: dict[str, bool]) -> None:
+    """Raises ValueError for an argument that would have no effect."""
+    for name, is_given in given.items():
+        if is_given:
+            raise ValueError(f"{name}: has no effect on a {owner}; leave it out")
 
 
 def read(
@@ -137,23 +151,31 @@ def read(
     ...     read(path)
     Volume((2, 3, 4) of int16, spacing (1.0, 1.0, 2.0), name 'values')
     """
-    name = os.fspath(path)
+    name, number = path_of(path), integer_of(step, "step", 2**63 - 1)
+    if not isinstance(array, str):
+        raise ValueError(f"array: expected a name, got {array!r}")
+    of_volumes = {"array": array != "", "step": number != 0, "labels": labels}
+    turns = {"axes": word_of(axes, "axes") != "ras"}
+    of_meshes = {"ten_nodes": word_of(ten_nodes, "ten_nodes") != "curved"}
     if _core.has_mesh_extension(name):
+        _check_unused("mesh", of_volumes)
         return MeshFile(name, axes=axes, ten_nodes=ten_nodes)
     is_surface = _core.is_surface_file(name)
     try:
         if is_surface:
+            _check_unused("surface", of_volumes | turns | of_meshes)
             return Surface(*_core.read_surface(name))
         kind = _core.kind_of(name)
         if kind == "mesh":
+            _check_unused("mesh of VTKHDF", of_volumes | turns)
             return MeshFile(name, ten_nodes=ten_nodes)
         if kind == "contact problem":
+            _check_unused(kind, of_volumes | turns | of_meshes)
             return ContactProblem(**_core.read_contact_problem(name))
+        _check_unused("volume", of_meshes)
         samples, grid, read_name, nifti = _core.read_volume(
-            name, array, integer_of(step, "step"), axes, bool(labels))
-    except _core.IoError as error:
-        if not is_lacking(error):
-            raise
+            name, array, number, axes, bool(labels))
+    except _core.MissingLibrary as error:
         if is_surface:
             return read_surface(name, error)
         check_default(name, "step", step, 0)
@@ -173,13 +195,15 @@ def _entry(name: str, samples: Sequence[np.ndarray], nifti: Any) -> dict[str, An
 
 
 def _volume_of(value: Any, grid: Grid | None, where: str) -> Volume:
-    if isinstance(value, Field):
-        return Volume(value.values, value.grid, value.name)
-    if isinstance(value, Volume):
-        return value
+    if isinstance(value, (Field, Volume)):
+        if grid is not None and grid != value.grid:
+            raise ValueError(f"grid: {where} has one; leave it out")
+        return value if isinstance(value, Volume) else Volume(
+            value.values, value.grid, value.name)
+    samples = samples_of(value, where)
     if grid is None:
         raise ValueError(f"grid: an array needs its grid; {where} is one")
-    return Volume(value, grid)
+    return Volume(samples, grid)
 
 
 def _volumes_of(result: WarpResult) -> list[Volume]:
@@ -195,9 +219,10 @@ def _volumes_of(result: WarpResult) -> list[Volume]:
 
 
 def _write_volumes(
-    path: str, value: Any, grid: Grid | None, times: Sequence[float] | None, compress: int
+    path: str, value: Any, grid: Grid | None, times: Any, compress: int
 ) -> None:
     if isinstance(value, WarpResult):
+        _check_unused("result of a warp, which has one", {"grid": grid is not None})
         value = _volumes_of(value)
     many = list(value) if isinstance(value, (list, tuple)) else [value]
     if not many:
@@ -210,31 +235,27 @@ def _write_volumes(
     if times is None:
         arrays = [_entry(volume.name, [volume.array], volume.nifti) for volume in volumes]
     else:
-        if len(times) != len(volumes):
-            raise ValueError(f"times: expected {len(volumes)}, one per volume, got {len(times)}")
+        times = numbers_of(times, "times", len(volumes)).tolist()
         for number, volume in enumerate(volumes):
             if volume.shape != first.shape or volume.dtype != first.dtype:
                 raise ValueError(f"value[{number}]: expected shape and type of value[0]")
         arrays = [_entry(first.name, [volume.array for volume in volumes], first.nifti)]
     _core.write_volumes(
-        path, first.grid._core(), arrays, [number_of(t, "times") for t in times or ()],
-        integer_of(compress, "compress"),
+        path, first.grid._core(), arrays, times or [], integer_of(compress, "compress"),
     )
 
 
-def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Sequence[float] | None) -> None:
+def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Any) -> None:
     points = nodes_of(mesh.points, "points")
     parts = curved_cells_of(mesh.cells, "cells", len(points))
-    steps = [] if deformed is None else list(deformed)
+    steps = [] if deformed is None else list_of(deformed, "deformed", "a list of positions")
     moved = [nodes_of(step, f"deformed[{n}]", len(points)) for n, step in enumerate(steps)]
     if times is None:
         last = max(len(moved) - 1, 1)
         times = [number / last for number in range(len(moved))] if len(moved) != 1 else [1.0]
-    if len(times) != len(moved):
-        raise ValueError(f"times: expected {len(moved)}, one per step, got {len(times)}")
     _core.write_mesh(
         path, points, *parts, [step - points for step in moved],
-        [number_of(t, "times") for t in times],
+        numbers_of(times, "times", len(moved)).tolist(),
     )
 
 
@@ -284,15 +305,22 @@ def write(
     ...     [entry["name"] for entry in read_header(path).arrays]
     ['a', 'b']
     """
-    name = os.fspath(path)
+    name = path_of(path)
+    grid = None if grid is None else reference_grid(grid, "grid")
+    of_volumes = {"grid": grid is not None, "compress": integer_of(compress, "compress") != 0}
+    of_meshes = {"deformed": deformed is not None}
     if not isinstance(value, ContactProblem):
         _check_ending(name, isinstance(value, (Mesh, Surface)))
     if isinstance(value, Mesh):
+        _check_unused("mesh", of_volumes)
         _write_mesh(name, value, deformed, times)
     elif isinstance(value, Surface):
+        _check_unused("surface", of_volumes | of_meshes | {"times": times is not None})
         points = nodes_of(value.points, "points")
         _core.write_surface(name, points, triangles_of(value.triangles, "triangles", len(points)))
     elif isinstance(value, ContactProblem):
+        _check_unused("contact problem", of_volumes | of_meshes | {"times": times is not None})
         _core.write_contact_problem(name, value._core(), "", "")
     else:
+        _check_unused("volume", of_meshes)
         _write_volumes(name, value, grid, times, compress)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,18 @@ from . import _core
 from ._arrays import integer_of, numbers_of, vector_of
 
 _UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_UNIT_ROWS = np.ravel(_UNIT)
+
+
+def shape_of(value: Any) -> tuple[int, int, int]:
+    """Voxels along z, y, x."""
+    numbers = value if type(value) is tuple else np.ravel(np.asarray(value, object))
+    shape: Any = tuple([integer_of(n, "shape") for n in numbers])
+    if len(shape) != 3:
+        raise ValueError(f"shape: expected three numbers z, y, x, got {value}")
+    if min(shape) < 1 or max(shape) > 2**30:
+        raise ValueError(f"shape: expected 1 to 2^30 voxels along each axis, got {shape}")
+    return shape
 
 
 @dataclass(frozen=True)
@@ -42,21 +56,16 @@ class Grid:
     direction: tuple[tuple[float, float, float], ...] = field(default=_UNIT)
 
     def __post_init__(self) -> None:
-        numbers = np.reshape(np.asarray(self.shape, object), -1)
-        shape = tuple(integer_of(n, "shape") for n in numbers)
-        if len(shape) != 3:
-            raise ValueError(f"shape: expected three numbers z, y, x, got {self.shape}")
-        if not all(1 <= n <= 2**30 for n in shape):
-            raise ValueError(f"shape: expected 1 to 2^30 voxels along each axis, got {shape}")
-        rows = numbers_of(self.direction, "direction")
+        shape = shape_of(self.shape)
+        rows = _UNIT_ROWS if self.direction is _UNIT else numbers_of(self.direction, "direction")
         if rows.size != 9:
             raise ValueError(f"direction: expected 3 x 3 numbers, got {rows.size}")
         set_ = object.__setattr__  # the class is frozen
         set_(self, "shape", shape)
         set_(self, "spacing", vector_of(self.spacing, "spacing"))
         set_(self, "origin", vector_of(self.origin, "origin"))
-        set_(self, "direction", tuple(tuple(float(x) for x in row) for row in rows.reshape(3, 3)))
-        set_(self, "_made", _core.Grid(self.shape[::-1], self.origin, self.spacing, list(rows)))
+        set_(self, "direction", tuple(map(tuple, rows.reshape(3, 3).tolist())))
+        set_(self, "_made", _core.Grid(shape[::-1], self.origin, self.spacing, rows.tolist()))
 
     def __reduce__(self) -> Any:
         return Grid, (self.shape, self.spacing, self.origin, self.direction)
@@ -71,15 +80,7 @@ class Grid:
         matrix = numbers_of(affine, "affine")
         if matrix.size != 16:
             raise ValueError(f"affine: expected 4 x 4 numbers, got shape {np.shape(affine)}")
-        matrix = matrix.reshape(4, 4)
-        if not np.array_equal(matrix[3], (0, 0, 0, 1)):
-            raise ValueError("affine: expected 0 0 0 1 as its last row")
-        spacing = np.linalg.norm(matrix[:3, :3], axis=0)
-        if not np.all(spacing > 0):
-            raise ValueError("affine: expected columns other than 0")
-        direction: Any = matrix[:3, :3] / spacing
-        place: tuple[Any, Any] = tuple(spacing), tuple(matrix[:3, 3])
-        return cls(shape, *place, direction)
+        return _grid_of_affine(shape_of(shape), matrix.tobytes())
 
     @property
     def affine(self) -> np.ndarray:
@@ -97,6 +98,19 @@ class Grid:
 
     def _core(self) -> _core.Grid:
         return self.__dict__["_made"]
+
+
+@lru_cache(maxsize=16)  # a call of warp with an affine matrix would take half as long again
+def _grid_of_affine(shape: tuple[int, int, int], matrix: bytes) -> Grid:
+    *rows, last = np.frombuffer(matrix).reshape(4, 4).tolist()
+    if last != [0, 0, 0, 1]:
+        raise ValueError("affine: expected 0 0 0 1 as its last row")
+    *axes, origin = zip(*rows)
+    spacing: Any = tuple([math.sqrt(x * x + y * y + z * z) for x, y, z in axes])
+    if not 0 < min(spacing) <= max(spacing) < math.inf:
+        raise ValueError("affine: expected finite columns other than 0")
+    direction: Any = tuple([(x / spacing[0], y / spacing[1], z / spacing[2]) for x, y, z, _ in rows])
+    return Grid(shape, spacing, origin, direction)
 
 
 def grid_from_core(grid: _core.Grid) -> Grid:
@@ -124,8 +138,13 @@ def reference_grid(reference: Any, name: str = "reference") -> Grid:
     if isinstance(getattr(reference, "grid", None), Grid):
         return reference.grid
     if hasattr(reference, "affine") and hasattr(reference, "shape"):  # nibabel: axes x, y, z
+        if len(reference.shape) < 3:
+            raise ValueError(f"{name}: expected an image of three axes, got {reference.shape}")
         return Grid.from_affine(tuple(reference.shape[:3])[::-1], reference.affine)
     if hasattr(reference, "GetSpacing") and hasattr(reference, "GetDirection"):  # SimpleITK
+        if reference.GetDimension() != 3:
+            raise ValueError(f"{name}: expected an image of three dimensions, got "
+                             f"{reference.GetDimension()}")
         return make_grid(
             tuple(reference.GetSize())[::-1], reference.GetSpacing(), reference.GetOrigin(),
             np.reshape(reference.GetDirection(), (3, 3)), None,

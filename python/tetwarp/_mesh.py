@@ -133,13 +133,13 @@ def deform(
     """
     nodes = nodes_of(points, "points")
     tets, hexes, _ = curved_cells_of(cells, "cells", len(nodes))
-    if axis not in _AXES:
+    if word_of(axis, "axis") not in _AXES:
         raise ValueError(f"axis: expected x, y or z, got {axis!r}")
-    if not 0 <= integer_of(seed, "seed") < 2**64:
+    if integer_of(seed, "seed", 2**64 - 1) < 0:
         raise ValueError(f"seed: expected a number from 0 to 2^64 - 1, got {seed}")
     return np.asarray(_core.deform(
         nodes, tets, hexes, word_of(kind, "kind"), number_of(amount, "amount"), _AXES[axis],
-        integer_of(seed, "seed"), vector_of(offset, "offset"), number_of(time, "time"),
+        integer_of(seed, "seed", 2**64 - 1), vector_of(offset, "offset"), number_of(time, "time"),
     ))
 
 
@@ -195,7 +195,7 @@ def isosurface(
     Surface(60 points, 116 triangles)
     """
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
-    about = None if triangles is None else integer_of(triangles, "triangles")
+    about = None if triangles is None else integer_of(triangles, "triangles", 2**63 - 1)
     made = _core.isosurface(source.array, source.grid._core(), number_of(value, "value"), about)
     return Surface(*made)
 

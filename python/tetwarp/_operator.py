@@ -11,6 +11,7 @@ from ._arrays import (
     array_of,
     cells_of,
     describe,
+    floats_of,
     integer_of,
     maker_of,
     nodes_of,
@@ -188,11 +189,7 @@ class WarpOperator:
 
     @staticmethod
     def _numbers(value: Any, name: str, grid: Grid) -> np.ndarray:
-        plain = array_of(value, name)
-        try:
-            array = np.ascontiguousarray(plain, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise ValueError(f"{name}: expected an array of numbers") from None
+        array = floats_of(value, name)
         if array.ndim not in (3, 4) or array.shape[:3] != grid.shape or array.size == 0:
             raise ValueError(
                 f"{name}: expected shape {grid.shape}, or this and components, got {array.shape}"

@@ -17,11 +17,6 @@ from ._mesh import Surface
 from ._volume import Volume
 
 
-def is_lacking(error: Exception) -> bool:
-    """Whether a file was not read because tetwarp-read lacks a library."""
-    return "this build cannot read" in str(error)
-
-
 def _package(name: str, pip: str, error: Exception) -> Any:
     try:
         return importlib.import_module(name)
@@ -88,9 +83,9 @@ def read_surface(path: str, error: Exception) -> Surface:
     return Surface(points, triangles.astype(np.int32))
 
 
-def read_image(path: str, array: str, error: Exception) -> Volume:
+def read_image(path: str, array: str, error: _core.MissingLibrary) -> Volume:
     """A DICOM file by pydicom, a .vti by VTK."""
-    if "cannot read DICOM" in str(error):
+    if error.library == "GDCM":
         _package("pydicom", "pydicom", error)
         check_default(path, "array", array, "")
         try:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from . import _core
 from ._arrays import describe
 from ._grid import Grid
 
@@ -22,7 +22,6 @@ EXTRAS: dict[str, tuple[Any, int]] = {
 }
 
 
-@dataclass(eq=False)
 class WarpResult:
     """What a warp has made.
 
@@ -37,13 +36,29 @@ class WarpResult:
     `write` writes it with all its arrays, as the command does.
     """
 
-    volume: np.ndarray
-    grid: Grid
-    report: dict[str, Any]
-    volumes: tuple[np.ndarray, ...] = ()
-    extras: dict[str, np.ndarray] = field(default_factory=dict)
-    names: tuple[str, ...] = ("values",)
-    nifti: tuple[dict[str, Any] | None, ...] = (None,)
+    def __init__(
+        self,
+        volume: np.ndarray,
+        grid: Grid,
+        report: _core.StepReport,
+        volumes: tuple[np.ndarray, ...],
+        extras: dict[str, np.ndarray],
+        names: tuple[str, ...],
+        nifti: tuple[dict[str, Any] | None, ...],
+    ) -> None:
+        self.volume, self.grid, self.volumes, self.extras = volume, grid, volumes, extras
+        self.names, self.nifti = names, nifti
+        self._report: Any = report
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """Counts of voxels and tetrahedra, seconds of the stages, totals, back end."""
+        if not isinstance(self._report, dict):  # made when it is wanted
+            self._report = self._report.dict()
+        return self._report
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_report": self.report}
 
     def __getattr__(self, name: str) -> np.ndarray:
         extras = self.__dict__.get("extras", {})

@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterator, Union
 import numpy as np
 
 from . import _core
-from ._arrays import integer_of, number_of, vector_of, word_of
+from ._arrays import check_callback, integer_of, number_of, path_of, vector_of, word_of
 from ._grid import grid_from_core
 from ._mesh import Mesh, Surface
 from ._volume import Volume
@@ -73,7 +73,7 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise TypeError(f"scene: {type(value).__name__} is no value of JSON")
+    raise TypeError(f"{type(value).__name__} is no value of JSON")
 
 
 def shipped_scenes() -> list[str]:
@@ -91,7 +91,7 @@ def shipped_scene(name: str) -> dict[str, Any]:
     >>> shipped_scene("cantilever")["bodies"][0]["kind"]
     'fem'
     """
-    return json.loads(_core.scene_text(name))
+    return json.loads(_core.scene_text(word_of(name, "name")))
 
 
 class Simulator:
@@ -138,15 +138,21 @@ class Simulator:
         max_step_seconds: float = float("inf"),
     ) -> None:
         if isinstance(scene, dict):
-            file, text = "scene", json.dumps(scene, default=_plain)
+            try:
+                file, text = "scene", json.dumps(scene, default=_plain, allow_nan=False)
+            except (TypeError, ValueError, RecursionError) as error:
+                raise ValueError(f"scene: {error}") from None
         elif isinstance(scene, (str, os.PathLike)):
-            file, text = os.fspath(scene), ""
+            file, text = path_of(scene, "scene"), ""
+            if folder:
+                raise ValueError("folder: is for a scene in a dict; names in a file are relative to "
+                                 "it")
         else:
             raise ValueError(
                 f"scene: expected a dict or the path of a file, got {type(scene).__name__}"
             )
         self._simulator = _core.Simulator(
-            file, text, os.fspath(folder), backend=word_of(backend, "backend"),
+            file, text, path_of(folder, "folder") if folder else "", backend=word_of(backend, "backend"),
             device=integer_of(device, "device"),
             threads=integer_of(threads, "threads"), untangle=bool(untangle),
             max_step_seconds=number_of(max_step_seconds, "max_step_seconds"),
@@ -180,6 +186,7 @@ class Simulator:
         """
         if integer_of(count, "count") < 0:
             raise ValueError(f"count: expected 0 or more steps, got {count}")
+        check_callback(progress, "progress")
         return all(self._simulator.step(progress) for _ in range(count))
 
     def run(self) -> Iterator[int]:
@@ -288,7 +295,7 @@ class Simulator:
         body the point at that place. Stiffness [N/m] and damping [N s/m] are totals. Raises
         ValueError naming what is wrong."""
         self._simulator.add_handle(
-            name,
+            word_of(name, "name"),
             self.names[self._index(body)],
             vector_of(center, "center"),
             number_of(radius, "radius"),
@@ -298,16 +305,17 @@ class Simulator:
 
     def move_handle(self, name: str, displacement: Any) -> None:
         """Moves the anchors of a handle from where they started, instead of its path [m]."""
-        self._simulator.move_handle(name, vector_of(displacement, "displacement"))
+        self._simulator.move_handle(word_of(name, "name"), vector_of(displacement, "displacement"))
 
     def release_handle(self, name: str) -> None:
         """The springs of a handle let go, until it is moved again."""
-        self._simulator.release_handle(name)
+        self._simulator.release_handle(word_of(name, "name"))
 
     def move_script(self, name: str, displacement: Any, axis_angle: Any = (0, 0, 0)) -> None:
         """The pose of a scripted body or obstacle relative to its start [m, rad]."""
         self._simulator.move_script(
-            name, vector_of(displacement, "displacement"), vector_of(axis_angle, "axis_angle")
+            word_of(name, "name"), vector_of(displacement, "displacement"),
+            vector_of(axis_angle, "axis_angle"),
         )
 
     def checkpoint(self) -> bytes:
@@ -316,6 +324,8 @@ class Simulator:
 
     def restore(self, state: bytes) -> None:
         """Goes on from checkpoint(). Raises ValueError if it is not of this scene."""
+        if not isinstance(state, (bytes, bytearray, memoryview)):
+            raise ValueError(f"state: expected the bytes of checkpoint(), got {type(state).__name__}")
         self._simulator.restore(bytes(state))
 
     def __repr__(self) -> str:

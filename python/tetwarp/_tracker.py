@@ -8,7 +8,18 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import array_of, integer_of, integers_of, number_of, numbers_of, points_of
+from ._arrays import (
+    array_of,
+    check_kind,
+    in_order,
+    integer_of,
+    integers_of,
+    list_of,
+    number_of,
+    numbers_of,
+    points_of,
+    word_of,
+)
 from ._contact import ContactProblem, ContactSolution
 
 _MATERIAL = (
@@ -40,15 +51,16 @@ def _column_of(value: Any, name: str, count: int, width: int, dtype: Any) -> np.
         )
     if dtype is np.int32:
         return integers_of(array, name).reshape(shape)
-    return np.ascontiguousarray(array, dtype=dtype)
+    return in_order(array, dtype)
 
 
 def _bodies_of(bodies: Sequence[Any]) -> list[np.ndarray]:
     """Per body its vertices, or position and rotation in one array."""
     places = []
-    for number, body in enumerate(bodies):
+    for number, body in enumerate(list_of(bodies, "bodies", "a list of bodies")):
         name = f"bodies[{number}]"
-        if isinstance(body, tuple):
+        is_pair = isinstance(body, list) and len(body) == 2 and np.size(body[1]) == 4
+        if isinstance(body, tuple) or is_pair:
             if len(body) != 2:
                 raise ValueError(f"{name}: expected (position, rotation) or vertices (n, 3)")
             position = numbers_of(body[0], f"{name}: position", 3)
@@ -201,7 +213,12 @@ class ContactTracker:
         debond_intensity: float = 1e-3,
         threads: int = 1,
     ) -> None:
+        if records is not None and "keys" not in getattr(records, "table", ()):
+            raise ValueError(f"records: expected those of a tracker, got {type(records).__name__}")
+        materials = list_of(materials, "materials", "a list of dicts")
         for number, material in enumerate(materials):
+            if not isinstance(material, dict):
+                raise ValueError(f"materials[{number}]: expected a dict, got {material!r}")
             for name in material:
                 if name not in _MATERIAL:
                     raise ValueError(
@@ -220,7 +237,7 @@ class ContactTracker:
             )
         }
         self._tracker = _core.ContactTracker(
-            given, numbers, integrator, integer_of(threads, "threads"),
+            given, numbers, word_of(integrator, "integrator"), integer_of(threads, "threads"),
             0 if records is None else len(records), {} if records is None else records.table,
         )
         self._count: int | None = None
@@ -247,10 +264,13 @@ class ContactTracker:
         ValueError
             naming the member, contact or body that is wrong. Nothing has changed then.
         """
+        if not isinstance(contacts, dict):
+            raise ValueError(f"contacts: expected a dict of arrays, got {type(contacts).__name__}")
         for name in contacts:
             if name not in _CONTACTS:
                 raise ValueError(f"contacts: {name!r} is not one of {', '.join(_CONTACTS)}")
-        count = len(array_of(contacts.get("keys", ()), "contacts['keys']"))
+        keys = array_of(contacts.get("keys", ()), "contacts['keys']")
+        count = len(keys) if keys.ndim else 0
         table = {}
         for name, (width, dtype, is_required) in _CONTACTS.items():
             if name in contacts:
@@ -276,6 +296,7 @@ class ContactTracker:
         RuntimeError
             no step has begun.
         """
+        check_kind(problem, ContactProblem, "problem")
         filled = self._tracker.fill()
         rows = 3 * (self._count or 0)
         if problem.jacobian is not None and problem.jacobian.shape[0] != rows:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import samples_of, word_of
+from ._arrays import as_array, samples_of, word_of
 from ._grid import Grid, grid_from_core, make_grid
 
 
@@ -50,9 +50,7 @@ class Volume:
         return self.grid.affine
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
-        if copy:
-            return np.array(self.array, dtype=dtype)
-        return np.asarray(self.array, dtype=dtype)
+        return as_array(self.array, dtype, copy)
 
     def __repr__(self) -> str:
         spacing = tuple(round(x, 6) for x in self.grid.spacing)

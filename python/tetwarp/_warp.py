@@ -9,10 +9,12 @@ import numpy as np
 
 from . import _core
 from ._arrays import (
+    check_callback,
     check_cells,
     check_finite,
     given_cells_of,
     integer_of,
+    list_of,
     maker_of,
     number_of,
     out_of,
@@ -55,20 +57,33 @@ def _sources_of(
     return sources
 
 
+def _default_value_of(value: Any, sources: Sequence[Any]) -> float:
+    """A number, which no source rounds: the library has it in float64."""
+    number = number_of(value, "default_value")
+    for source in sources if isinstance(value, (int, np.integer)) else ():
+        if type_of(source) not in ("int64", "uint64"):
+            continue
+        limits = np.iinfo(type_of(source))
+        given = min(max(int(value), limits.min), limits.max)
+        if given != min(max(int(number), limits.min), limits.max):
+            raise ValueError(f"default_value: expected a number that float64 holds, got {value}")
+    return number
+
+
 def _quantities_of(quantity: Any, count: int) -> list[str]:
     if quantity is None:
         return []
-    words = [quantity] * count if isinstance(quantity, str) else list(quantity)
+    words = [quantity] * count if isinstance(quantity, str) else list_of(quantity, "quantity", "words")
     if len(words) != count:
         raise ValueError(f"quantity: expected {count} words, one per volume, got {len(words)}")
-    return words
+    return [word_of(word, "quantity") for word in words]
 
 
 def extras_of(outputs: Sequence[str], allowed: dict[str, Any]) -> list[str]:
     """Names of further outputs, checked."""
-    names = [outputs] if isinstance(outputs, str) else list(outputs)
+    names = [outputs] if isinstance(outputs, str) else list_of(outputs, "outputs", "words")
     for name in names:
-        if name not in allowed:
+        if word_of(name, "outputs") not in allowed:
             raise ValueError(f"outputs: {name!r} is not one of {', '.join(allowed)}")
     return names
 
@@ -156,9 +171,10 @@ class Warper:
         device: int = 0,
         threads: int = 0,
     ) -> None:
+        falloff, gaussian = number_of(falloff, "falloff"), pair_of(label_gaussian, "label_gaussian")
         if falloff and outside != "falloff":
             raise ValueError(f'falloff: is for outside="falloff", got outside={outside!r}')
-        if label_gaussian != (1.0, 1.0) and label_rule != "gaussian":
+        if gaussian != (1.0, 1.0) and label_rule != "gaussian":
             raise ValueError(
                 f'label_gaussian: is for label_rule="gaussian", got label_rule={label_rule!r}')
         given = list(volume) if isinstance(volume, (list, tuple)) else [volume]
@@ -183,11 +199,10 @@ class Warper:
             self._warper: _core.Warper | None = _core.Warper(
                 self._arrays, grid._core(), points, *corners,
                 interpolator=interpolator, label_rule=label_rule,
-                label_gaussian=pair_of(label_gaussian, "label_gaussian"),
-                overshoot=overshoot, antialias=bool(antialias),
+                label_gaussian=gaussian, overshoot=overshoot, antialias=bool(antialias),
                 intensity=intensity, quantities=_quantities_of(quantity, len(given)),
-                outside=outside, falloff=number_of(falloff, "falloff"),
-                default_value=number_of(default_value, "default_value"),
+                outside=outside, falloff=falloff,
+                default_value=_default_value_of(default_value, self._arrays),
                 output_grid=None if reference is None else self._grid._core(),
                 backend=backend, device=integer_of(device, "device"),
                 threads=integer_of(threads, "threads"),
@@ -251,6 +266,7 @@ class Warper:
             positions = self._device.array_of(deformed, "deformed", shape, "float64")
         else:
             positions = points_of(deformed, "deformed", self._node_count)
+        check_callback(progress, "progress")
         names = extras_of(outputs, EXTRAS)
         if "forward" in names and not self._is_source_grid:
             raise ValueError("outputs: 'forward' is on the grid of the source; give no reference")
@@ -262,8 +278,6 @@ class Warper:
         except (TypeError, ValueError) as error:
             if isinstance(positions, np.ndarray):
                 check_finite(positions, "deformed")
-            if progress is not None and not callable(progress):
-                raise ValueError(f"progress: expected a function, got {progress!r}") from None
             raise with_remedy(error) from None
         if out is None and self._device is not None:
             volumes = tuple(arrays)
@@ -315,9 +329,6 @@ class Warper:
                 device.array_of(array, name, shape, type_of(source))
                 continue
             given[number] = out_of(array, name, shape, source.dtype)
-            others = self._arrays + given[:number]
-            if any(np.may_share_memory(given[number], other) for other in others):
-                raise ValueError(f"{name}: shares memory with a source or another output")
         return given
 
     def _extra(self, name: str) -> Any:

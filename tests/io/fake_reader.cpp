@@ -9,7 +9,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <tetwarp/error.hpp>
+#include <tetwarp/missing_library.hpp>
 #include <vector>
 
 #include "io/reader/mesh_sender.hpp"
@@ -45,6 +45,7 @@ ImportedMesh read(const std::string& path, const MeshImportOptions& options) {
       {"hang", [] { pause(); }},
       {"allocate", allocate},
       {"print", print},
+      {"missing", [&] { throw MissingLibrary(path, "VTK", "this build cannot read it"); }},
       {"io error", [&] { throw IoError(path, "u", "expected three components"); }},
       {"error", [] { throw std::runtime_error("odd"); }}};
   if (const auto end = ends.find(path); end != ends.end()) end->second();

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/io_files.hpp"
@@ -200,23 +203,50 @@ TEST(Axes, AQformThatDiffersFromTheSformIsNotCodedAgain) {
   EXPECT_EQ(read_nifti_facts(folder / "a.nii").sform_code, NIFTI_XFORM_MNI_152);
 }
 
-TEST(Axes, RefusesFactsThatNiftiCannotHold) {
-  const ScratchFolder folder;
-  ArrayHeader array{"values", PixelType::float32, 1, NiftiFacts{}};
+/// Writes one array with these facts. @returns the error, empty without one
+std::string error_of_writing(const std::string& path, const NiftiFacts& facts) {
   const Volume volume = make_volume(oblique_grid(), PixelType::float32);
-  const auto error = [&] {
-    BlockVolumeWriter writer(folder / "v.vtkhdf", volume.grid, {array}, {}, false,
-                             ChunkShape::rows);
+  return io_error([&] {
+    const ArrayHeader array{"values", PixelType::float32, 1, facts};
+    BlockVolumeWriter writer(path, volume.grid, {array}, {}, false, ChunkShape::rows);
     writer.write(0, {{0, 0, 0}, volume.grid.dims}, volume.data.data());
     writer.finish();
-    return io_error([&] { read_volume_header(folder / "v.vtkhdf"); });
-  };
+  });
+}
+
+TEST(Axes, ReadersRefuseFactsThatNiftiCannotHold) {
+  const ScratchFolder folder;
+  const std::string file = folder / "v.vtkhdf", values = "VTKHDF/PointData/values";
+  const auto error = [&] { return io_error([&] { read_volume_header(file); }); };
+
+  EXPECT_EQ(error_of_writing(file, {}), "");
   EXPECT_EQ(error(), "");
-  array.nifti->sform_code = 40000;
+  Hdf5Editor(file).attribute<std::int64_t>(values, "tetwarp_nifti_sform_code", {40000});
   EXPECT_NE(error().find("values: attribute tetwarp_nifti_sform_code is 40000"), std::string::npos);
-  array.nifti = NiftiFacts{};
-  array.nifti->description = std::string(200, 'x');
+  Hdf5Editor(file).attribute<std::int64_t>(values, "tetwarp_nifti_sform_code", {1});
+  Hdf5Editor(file).text(values, "tetwarp_nifti_descrip", std::string(200, 'x'));
   EXPECT_NE(error().find("tetwarp_nifti_descrip has 200 bytes"), std::string::npos);
+}
+
+TEST(Axes, WritersRefuseFactsThatNiftiCannotHold) {
+  const ScratchFolder folder;
+  const std::vector<std::pair<NiftiFacts, std::string>> wrong = {
+      {{.sform_code = 40000}, "sform_code is 40000, expected 0 to 32767"},
+      {{.qform_code = -1}, "qform_code is -1"},
+      {{.xyzt_units = 256}, "xyzt_units is 256, expected 0 to 255"},
+      {{.intent_code = 40000}, "intent_code is 40000"},
+      {{.intent_name = std::string(17, 'x')}, "intent_name has 17 bytes, expected at most 16"},
+      {{.description = std::string(81, 'x')}, "description has 81 bytes, expected at most 80"},
+      {{.cal_min = std::numeric_limits<double>::quiet_NaN()}, "cal_min is no finite number"},
+      {{.cal_max = 1e39}, "cal_max is no finite number of 32 bits"},
+      {{.time_step = std::numeric_limits<double>::infinity()}, "time_step is no finite number"}};
+  for (const char* const name : {"v.vtkhdf", "v.nii"}) {
+    for (const auto& [facts, text] : wrong) {
+      const std::string error = error_of_writing(folder / name, facts);
+      EXPECT_NE(error.find("NIfTI header: " + text), std::string::npos) << name << ": " << error;
+      EXPECT_FALSE(std::filesystem::exists(folder / name)) << text;
+    }
+  }
 }
 }  // namespace
 }  // namespace tetwarp::test

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -121,6 +122,28 @@ TEST(IoBlocks, TemporalFilesHoldTheirStepsAndRepeatThem) {
   EXPECT_EQ(read_volume(folder / "a.vtkhdf", {}, 0).data, first[0].data);
   EXPECT_EQ(read_volume(folder / "a.vtkhdf", {}, 1).data, first[0].data);
   EXPECT_EQ(read_volume(folder / "a.vtkhdf", {}, 2).data, second[0].data);
+}
+
+/// No reader takes a time that is not finite.
+TEST(IoBlocks, TimesMustBeFinite) {
+  const ScratchFolder folder;
+  const std::vector<Volume> volumes{patterned(PixelType::uint8, 2, "density", 0)};
+  const Mesh mesh = two_tets();
+  for (const double time : {double{NAN}, double{INFINITY}, double{-INFINITY}}) {
+    const auto is_refused = [&](const auto& write) {
+      return io_error(write).find("the time of a step is") != std::string::npos;
+    };
+    for (const char* const name : {"a.vtkhdf", "a.nii", "a.nrrd"}) {
+      BlockVolumeWriter writer(folder / name, volumes[0].grid, headers_of(volumes), {}, true);
+      EXPECT_TRUE(is_refused([&] { writer.begin_step(time); })) << name;
+      writer.begin_step(0);
+      EXPECT_TRUE(is_refused([&] { writer.repeat_step(time); })) << name;
+    }
+    TemporalVolumeWriter whole(folder / "b.vtkhdf");
+    EXPECT_TRUE(is_refused([&] { whole.append(time, {&volumes[0]}); }));
+    const std::vector<std::vector<Point3>> steps{mesh.rest_positions};
+    EXPECT_TRUE(is_refused([&] { write_mesh(folder / "c.vtkhdf", mesh, steps, {time}); }));
+  }
 }
 
 /// Axes of one sample are not in the file, as VTK 9.3 and later expect; static and temporal, of one

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <tetwarp/missing_library.hpp>
 #include <tetwarp/surface_reader.hpp>
 #include <vector>
 
@@ -85,6 +86,16 @@ TEST_F(MeshChild, RefusesSamplesOfAnotherImageThanItsHeader) {
 TEST_F(MeshChild, PassesErrorsOnInTheirWords) {
   EXPECT_EQ(complaint("io error"), "io error: u: expected three components");
   EXPECT_EQ(complaint("error"), "error: cannot be read: odd");
+}
+
+TEST_F(MeshChild, KeepsTheLibraryThatIsMissing) {
+  try {
+    read_mesh_in_child("missing", {}, limits);
+    FAIL() << "no error";
+  } catch (const MissingLibrary& error) {
+    EXPECT_EQ(error.library(), "VTK");
+    EXPECT_STREQ(error.what(), "missing: this build cannot read it");
+  }
 }
 
 TEST_F(MeshChild, MakesOneLineOfEveryEndOfAReader) {
