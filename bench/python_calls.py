@@ -87,7 +87,7 @@ def main():
             lambda: tetwarp.warp(volume.array, *mesh, deformed, out=out, affine=affine, **options))),
     }
     _core.Warper = kept
-    cells = (mesh.cells, np.empty((0, 8), np.int32))
+    cells = (mesh.cells, np.empty((0, 8), np.int32), np.empty((0, 6), np.int32))
     point = mesh.points.mean(axis=0, keepdims=True)
     points = {
         "call": least(lambda: timed(lambda: tetwarp.transform_points(point, *mesh, deformed))),

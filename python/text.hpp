@@ -29,7 +29,7 @@ inline std::string bytes_of(nanobind::handle text, const std::string& name) {
     if (all.find('\0') == std::string::npos) return all;
   }
   PyErr_Clear();
-  throw std::invalid_argument(name + ": expected a text without zeros");
+  throw std::invalid_argument(name + ": expected a text of Unicode without zeros");
 }
 
 }  // namespace tetwarp::python

@@ -126,8 +126,8 @@ struct ContactOptions {
   // interrupted, so that they can exceed a limit of time: a single factorization, the structure of
   // a new sparsity pattern, a kernel on a device, back end `reference`.
   double max_seconds = std::numeric_limits<double>::infinity();  ///< wall time of a solve [s], > 0
-  std::int64_t max_newton = std::numeric_limits<std::int64_t>::max();  ///< Newton steps of a solve,
-                                                                       ///< >= 0
+  /// Factorizations of Newton's method and of the method of multipliers in a solve, >= 0.
+  std::int64_t max_newton = std::numeric_limits<std::int64_t>::max();
   /// Memory of one factorization [bytes], estimated before it is made; 0: 20 times that of the
   /// arrays of the problem, at least `least_memory`. Islands that must not be condensed are
   /// iterated; Newton's method is left out where its factors would be larger.

@@ -235,8 +235,9 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
   }
   // Per tetrahedron: setup, nodes, mesh. Per pair: the list and its copy for sorting. Per output
   // voxel: ranges, counts and work of cells, which have 512 voxels. Per source voxel: two bytes for
-  // each block that may be constant.
-  constexpr double straight_bytes = 600, curve_bytes = 300;
+  // each block that may be constant. Per curved tetrahedron: six nodes that no other one has, with
+  // five positions and a number each.
+  constexpr double straight_bytes = 600, curve_bytes = 6 * (5 * 24 + 4);
   constexpr double pair_bytes = 32, output_share = 0.1, source_share = 0.005;
   const double tet_bytes = straight_bytes + (mid_nodes.empty() ? 0 : curve_bytes);
   const auto hexes = cells.end() - std::ranges::lower_bound(cells, lone_tet_count());

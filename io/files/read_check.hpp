@@ -5,8 +5,8 @@
 
 namespace tetwarp {
 
-/// Sets what is called about once per megabyte of packed files; it may throw to end the read. Null:
-/// nothing. To be set before threads read.
+/// Sets what is called between parts of images, of at most 1 MiB or one slice; it may throw to end
+/// the read. Not called within a read of HDF5. Null: nothing. To be set before threads read.
 TETWARP_IO_EXPORT void set_read_check(void (*check)());
 
 /// Calls it.

@@ -71,7 +71,8 @@ std::string facts_problem(const NiftiFacts& facts) {
         of_text("intent_name", facts.intent_name, name_bytes),
         of_text("description", facts.description, description_bytes),
         of_number("cal_min", facts.cal_min), of_number("cal_max", facts.cal_max),
-        of_number("time_step", facts.time_step)}) {
+        of_number("time_step", facts.time_step), of_number("intent_p[0]", facts.intent_p[0]),
+        of_number("intent_p[1]", facts.intent_p[1]), of_number("intent_p[2]", facts.intent_p[2])}) {
     if (!problem.empty()) return "NIfTI header: " + problem;
   }
   return {};

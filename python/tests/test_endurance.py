@@ -149,19 +149,22 @@ def test_a_program_ends_while_daemon_threads_compute(tmp_path):
     """Python ends such threads where they take the interpreter's lock."""
     code = tmp_path / "code.py"
     code.write_text("""
-import threading, time, tetwarp
+import threading, tetwarp
 volume = tetwarp.phantom(shape=(20, 24, 32))
 mesh = tetwarp.lattice_mesh(volume, cells=4)
 moved = tetwarp.deform(*mesh)
-def warp(progress):
+def warp(progress, warped):
     while True:
         tetwarp.warp(volume, *mesh, moved, progress=progress)
+        warped.set()
+events = []
 for progress in (None, None, lambda fraction: None):
-    threading.Thread(target=warp, args=(progress,), daemon=True).start()
-time.sleep(0.1)
+    events.append(threading.Event())
+    threading.Thread(target=warp, args=(progress, events[-1]), daemon=True).start()
+assert all(event.wait(30) for event in events)
 """)
 
     for _ in range(3):
         done = subprocess.run([sys.executable, code], text=True, capture_output=True, timeout=60,
                               env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False)
-        assert done.returncode == 0, done.stderr
+        assert done.returncode == 0 and not done.stderr, done.stderr

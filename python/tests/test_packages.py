@@ -100,7 +100,7 @@ sys.stdout.buffer.write(b"\\2" + b"".join(struct.pack("<Q", len(t)) + t for t in
         with pytest.raises(tetwarp.IoError, match=f"{name}: this build cannot read it; in Python: "):
             tetwarp.read(tmp_path / name)
     with pytest.raises(tetwarp._core.MissingLibrary) as caught:
-        tetwarp._core.MeshFile(str(tmp_path / "a.vtu"), 0, "ras")
+        tetwarp._core.MeshFile(str(tmp_path / "a.vtu"), 0, "ras", True)
     assert caught.value.library == "VTK" and isinstance(caught.value, OSError)
 
 

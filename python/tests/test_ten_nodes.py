@@ -124,7 +124,7 @@ def test_points_without_a_place_in_their_cell_are_told(ten):
     folded[corners] = ten.points[corners]
     inside = np.random.default_rng(1).uniform(3, 19, (200, 3))
 
-    with pytest.warns(RuntimeWarning, match=r"of 200 points move with straight tetrahedra"):
+    with pytest.warns(RuntimeWarning, match=r"of 200 points are mapped by the straight tetrahedron of their cell"):
         tetwarp.transform_points(inside, *ten, folded, inverse=True)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -191,7 +191,13 @@ def test_bad_cells_are_named(source, ten):
 
 
 def test_other_packages_take_and_give_them(ten):
-    ten.cells[:4, 4:] = -1
+    ten.cells[[1, 5], 4:] = -1
+    straight = ten.cells[:, 4] < 0
+    in_order = np.vstack([ten.cells[straight], ten.cells[~straight]])
+    _, kinds = tetwarp._bridges._parts((ten.points, (ten.cells, np.arange(8)[None])))
+    assert list(kinds) == ["tetra", "tetra10", "hexahedron"]
+    assert np.array_equal(kinds["tetra"], in_order[:2, :4])
+    assert np.array_equal(kinds["tetra10"], in_order[2:])
     exchanged = []
     for name, make in (("meshio", tetwarp.to_meshio), ("pyvista", tetwarp.to_pyvista)):
         try:
@@ -200,7 +206,7 @@ def test_other_packages_take_and_give_them(ten):
             continue
         exchanged.append(name)
         back = tetwarp.mesh_from(make(ten))
-        assert np.array_equal(back.cells, ten.cells), name
+        assert np.array_equal(back.cells, in_order), name
         assert np.array_equal(back.points, ten.points), name
     if not exchanged:
         pytest.skip("neither meshio nor pyvista is installed")

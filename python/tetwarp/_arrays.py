@@ -153,7 +153,7 @@ def word_of(value: Any, name: str) -> str:
 def path_of(value: Any, name: str = "path") -> str:
     """The name of a file."""
     path = os.fsdecode(value) if isinstance(value, (bytes, os.PathLike)) else value
-    if not path or not _is_text(path):
+    if not _is_text(path) or not path:
         raise ValueError(f"{name}: expected the name of a file in UTF-8, got {value!r}")
     return path
 
@@ -282,7 +282,7 @@ def points_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
 
 
 def check_indices(array: np.ndarray, name: str, node_count: int, least: int = 0) -> None:
-    """Raises ValueError if a number is none of a node, or -1 where that is the `least`."""
+    """Raises ValueError for a number that no node has; -1 passes where `least` is -1."""
     if array.size and (array.min() < least or array.max() >= node_count):
         wrong = int(array.min()) if array.min() < least else int(array.max())
         raise ValueError(

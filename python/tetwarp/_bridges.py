@@ -154,13 +154,13 @@ def to_pyvista(value: Any, deformed: Any = None) -> Any:
 
 
 def _parts(mesh: Any) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Nodes, and the cells of each kind by its name in meshio, which has VTK's order of nodes."""
+    """Nodes, and the cells of each kind by its name in meshio, which has VTK's order of nodes: the
+    order of the mesh, but tetrahedra of four nodes are before those of ten."""
     points = nodes_of(mesh[0], "nodes")
     tets, hexes, mids = curved_cells_of(mesh[1], "cells", len(points))
     curved = (mids >= 0).any(axis=1) if len(mids) else np.zeros(len(tets), bool)
-    kinds = {"tetra": tets[~curved], "hexahedron": hexes}
-    if curved.any():
-        kinds["tetra10"] = np.hstack([tets, mids])[curved]
+    ten = np.hstack([tets, mids])[curved] if curved.any() else tets[:0]
+    kinds = {"tetra": tets[~curved], "tetra10": ten, "hexahedron": hexes}
     return points, {kind: part for kind, part in kinds.items() if len(part)}
 
 

@@ -279,7 +279,8 @@ class ContactSolver:
     ) -> ContactSolution:
         """Solves one problem; see solve_contacts()."""
         check_kind(problem, ContactProblem, "problem")
-        if problem.friction is None and (problem.jacobian or problem.delassus):
+        rows = [m.shape[0] for m in (problem.jacobian, problem.delassus) if m is not None]
+        if problem.friction is None and any(rows):
             raise ValueError("friction: expected one number per contact")
         check_callback(progress, "progress")
         impulse, velocity, body_velocity, bilateral, rolling, text = self._solver.solve(

@@ -245,8 +245,8 @@ def transform_points(
     Warns
     -----
     RuntimeWarning
-        how many points move with straight tetrahedra, as the curved map of their tetrahedron of ten
-        nodes has no inverse there.
+        how many points are mapped by the straight tetrahedron of their cell, whose curved map has no
+        inverse there.
 
     Raises
     ------
@@ -264,8 +264,8 @@ def transform_points(
     grid = None if reference is None else reference_grid(reference)._core()
     moved, owners, straightened = _core.map_points(where, grid, start, *parts, end, bool(inverse))
     if straightened:
-        warnings.warn(f"{straightened} of {len(where)} points move with straight tetrahedra, as the "
-                      "curved map of theirs has no inverse there", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"{straightened} of {len(where)} points are mapped by the straight tetrahedron "
+                      "of their cell, whose curved map has no inverse there", RuntimeWarning, stacklevel=2)
     moved[owners < 0] = number_of(default_value, "default_value")
     make = maker_of(points)
     return (make(moved), make(owners)) if return_owners else make(moved)

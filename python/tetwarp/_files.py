@@ -224,6 +224,8 @@ def _write_volumes(
     if isinstance(value, WarpResult):
         _check_unused("result of a warp, which has one", {"grid": grid is not None})
         value = _volumes_of(value)
+    if path.endswith(".nii"):
+        _check_unused("volume of .nii, which is not packed", {"compress": compress != 0})
     many = list(value) if isinstance(value, (list, tuple)) else [value]
     if not many:
         raise ValueError("value: expected at least one volume")
@@ -239,9 +241,11 @@ def _write_volumes(
         for number, volume in enumerate(volumes):
             if volume.shape != first.shape or volume.dtype != first.dtype:
                 raise ValueError(f"value[{number}]: expected shape and type of value[0]")
+            if volume.name != first.name:
+                raise ValueError(f"value[{number}]: expected the name of value[0], whose steps they are")
         arrays = [_entry(first.name, [volume.array for volume in volumes], first.nifti)]
     _core.write_volumes(
-        path, first.grid._core(), arrays, times or [], integer_of(compress, "compress"),
+        path, first.grid._core(), arrays, times or [], compress,
     )
 
 
@@ -307,7 +311,8 @@ def write(
     """
     name = path_of(path)
     grid = None if grid is None else reference_grid(grid, "grid")
-    of_volumes = {"grid": grid is not None, "compress": integer_of(compress, "compress") != 0}
+    level = integer_of(compress, "compress")
+    of_volumes = {"grid": grid is not None, "compress": level != 0}
     of_meshes = {"deformed": deformed is not None}
     if not isinstance(value, ContactProblem):
         _check_ending(name, isinstance(value, (Mesh, Surface)))
@@ -323,4 +328,4 @@ def write(
         _core.write_contact_problem(name, value._core(), "", "")
     else:
         _check_unused("volume", of_meshes)
-        _write_volumes(name, value, grid, times, compress)
+        _write_volumes(name, value, grid, times, level)

@@ -107,7 +107,7 @@ def _grid_of_affine(shape: tuple[int, int, int], matrix: bytes) -> Grid:
         raise ValueError("affine: expected 0 0 0 1 as its last row")
     *axes, origin = zip(*rows)
     spacing: Any = tuple([math.sqrt(x * x + y * y + z * z) for x, y, z in axes])
-    if not 0 < min(spacing) <= max(spacing) < math.inf:
+    if not all(0 < length < math.inf for length in spacing):
         raise ValueError("affine: expected finite columns other than 0")
     direction: Any = tuple([(x / spacing[0], y / spacing[1], z / spacing[2]) for x, y, z, _ in rows])
     return Grid(shape, spacing, origin, direction)

@@ -21,7 +21,9 @@ def _package(name: str, pip: str, error: Exception) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError:
-        raise _core.IoError(f"{error}; in Python: python3 -m pip install {pip}") from None
+        lacking = _core.MissingLibrary(f"{error}; in Python: python3 -m pip install {pip}")
+        lacking.library = name
+        raise lacking from None
 
 
 def _meshio_mesh(path: str, error: Exception) -> Any:

@@ -60,11 +60,12 @@ def _sources_of(
 def _default_value_of(value: Any, sources: Sequence[Any]) -> float:
     """A number, which no source rounds: the library has it in float64."""
     number = number_of(value, "default_value")
-    for source in sources if isinstance(value, (int, np.integer)) else ():
+    whole = value.item() if np.ndim(value) == 0 and hasattr(value, "item") else value
+    for source in sources if isinstance(whole, int) else ():
         if type_of(source) not in ("int64", "uint64"):
             continue
         limits = np.iinfo(type_of(source))
-        given = min(max(int(value), limits.min), limits.max)
+        given = min(max(whole, limits.min), limits.max)
         if given != min(max(int(number), limits.min), limits.max):
             raise ValueError(f"default_value: expected a number that float64 holds, got {value}")
     return number

@@ -58,7 +58,7 @@ TEST(ContactMultipliers, DenseBodiesAreThoseOfTheProblem) {
   const Delassus delassus(problem, 1e9);
   const VectorXd impulse = random_numbers(random, 3 * problem.contact_count());
   VectorXd push = bodies.load();
-  for (std::size_t c = 0; c < bodies.contact_count(); ++c) {
+  for (std::size_t c = 0; c < problem.friction.size(); ++c) {
     bodies.add_push(c, impulse.segment<3>(3 * static_cast<Index>(c)), push);
   }
   const VectorXd velocity = bodies.solve(push);
@@ -67,7 +67,7 @@ TEST(ContactMultipliers, DenseBodiesAreThoseOfTheProblem) {
   const std::vector<Matrix3d> blocks = delassus.diagonal_blocks();
   const VectorXd u = delassus.contact_velocity(velocity);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(problem.dof_count(), problem.dof_count());
-  for (std::size_t c = 0; c < bodies.contact_count(); ++c) {
+  for (std::size_t c = 0; c < problem.friction.size(); ++c) {
     EXPECT_LT((bodies.diagonal_block(c) - blocks[c]).norm(), 1e-12 * blocks[c].norm());
     EXPECT_LT(
         (bodies.contact_velocity(c, velocity) - u.segment<3>(3 * static_cast<Index>(c))).norm(),
@@ -98,27 +98,36 @@ double free_error(const ContactProblem& problem, const Delassus& delassus) {
   return std::sqrt(sum);
 }
 
-/// From zero impulses, on stacks whose masses grow upward to a factor of 243, some of them glued:
-/// the residual of the whole problem, found by a sparse factorization, is within the tolerance.
-TEST(ContactMultipliers, SolvesSmallStacksFromNothing) {
+/// After 24 sweeps, on stacks whose masses grow upward to a factor of 243, half of them glued: it
+/// solves most of them, those without friction all, and what it calls solved has a residual, found
+/// by a sparse factorization, within the tolerance.
+TEST(ContactMultipliers, SolvesSmallStacksAfterFewSweeps) {
+  int solved = 0;
   for (const double ratio : {1e-2, 1.0, 1e2, 243.0}) {
     for (const double friction : {0.0, 0.2, 0.8}) {
       for (const bool is_glued : {false, true}) {
         SCOPED_TRACE(testing::Message() << ratio << " " << friction << " " << is_glued);
         scenes::BoxStack choice{.boxes = 6, .mass_ratio = ratio, .friction = friction};
         if (is_glued) choice.glue = {.stiffness = 1e6};
-        const ContactProblem problem = scenes::box_stack(choice);
+        ContactProblem problem = scenes::box_stack(choice);
+        // Springs of some contacts hold along the tangents only.
+        for (std::size_t c = 0; c < problem.adhesion.stiffness.size(); c += 3) {
+          problem.adhesion.stiffness[c] = 0;
+        }
         const ContactOptions options{.tolerance = 1e-5};
         const Delassus delassus(problem, options.recovery_speed);
         const StopCriterion criterion{options.measure, options.tolerance,
                                       options.tolerance * free_error(problem, delassus)};
-        std::vector<double> impulse(3 * problem.friction.size(), 0.0);
+        std::vector<double> impulse =
+            solve_contacts(problem, {.method = ContactMethod::anderson, .max_sweeps = 24}).impulse;
         ASSERT_TRUE(takes_multipliers(problem, options, problem.dof_count()));
 
         const NewtonResult result =
             solve_by_multipliers(problem, options, criterion, impulse, nullptr);
 
-        EXPECT_TRUE(result.converged) << result.iterations;
+        solved += result.converged ? 1 : 0;
+        EXPECT_TRUE(result.converged || friction > 0);
+        if (!result.converged) continue;
         const VectorXd v =
             delassus.body_velocity(Eigen::Map<const VectorXd>(impulse.data(), std::ssize(impulse)));
         EXPECT_LE(
@@ -127,6 +136,7 @@ TEST(ContactMultipliers, SolvesSmallStacksFromNothing) {
       }
     }
   }
+  EXPECT_GE(solved, 17) << "of 24";
 }
 
 /// What automatic does with a stack whose sweeps are slow, against Newton's method.
@@ -142,12 +152,12 @@ TEST(ContactMultipliers, AutomaticTakesThemForHeavyStacks) {
   const ContactSolution truth =
       solve_contacts(problem, {.method = ContactMethod::newton, .tolerance = 1e-10});
   ASSERT_TRUE(truth.converged());
-  double difference = 0, size = 0;
+  double difference = 0;
   for (std::size_t d = 0; d < truth.body_velocity.size(); ++d) {
     difference = std::max(difference, std::abs(solution.body_velocity[d] - truth.body_velocity[d]));
   }
-  for (const double load : Delassus(problem, 1e9).free_velocity())
-    size = std::max(size, std::abs(load));
+  const Delassus delassus(problem, 1e9);
+  const double size = delassus.free_velocity().lpNorm<Eigen::Infinity>();
   EXPECT_LT(difference, 1e-3 * size);
 }
 
@@ -162,6 +172,11 @@ TEST(ContactMultipliers, OtherProblemsAreNotTaken) {
   EXPECT_FALSE(takes_multipliers(problem, {.rule = AdhesionRule::restrictive}, dofs));
   EXPECT_FALSE(takes_multipliers(problem, {.measure = ContactMeasure::fclib}, dofs));
   EXPECT_FALSE(takes_multipliers(scenes::random_local({}), {}, 0));
+  ContactProblem jointed = problem;
+  scenes::add_ball_joints(jointed, 2, 0.05);
+  const ContactSolution solution = solve_contacts(jointed, {.tolerance = 1e-8});
+  EXPECT_TRUE(solution.converged());
+  EXPECT_EQ(solution.report.multiplier_steps, 0);
 }
 }  // namespace
 }  // namespace tetwarp::test

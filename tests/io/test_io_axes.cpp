@@ -239,7 +239,8 @@ TEST(Axes, WritersRefuseFactsThatNiftiCannotHold) {
       {{.description = std::string(81, 'x')}, "description has 81 bytes, expected at most 80"},
       {{.cal_min = std::numeric_limits<double>::quiet_NaN()}, "cal_min is no finite number"},
       {{.cal_max = 1e39}, "cal_max is no finite number of 32 bits"},
-      {{.time_step = std::numeric_limits<double>::infinity()}, "time_step is no finite number"}};
+      {{.time_step = std::numeric_limits<double>::infinity()}, "time_step is no finite number"},
+      {{.intent_p = {3, 1e39, 0}}, "intent_p[1] is no finite number of 32 bits"}};
   for (const char* const name : {"v.vtkhdf", "v.nii"}) {
     for (const auto& [facts, text] : wrong) {
       const std::string error = error_of_writing(folder / name, facts);

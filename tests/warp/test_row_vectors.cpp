@@ -238,7 +238,19 @@ TEST(RowVectors, ChainsOfFieldsHaveTheBitsOfEveryRowAndInstructionSet) {
     }
     return field;
   };
+  Grid between = grid;
+  between.origin = {0.25, 0.5, 0.25};
+  const auto noise_on = [](const Grid& on, std::uint64_t seed) {
+    DisplacementField field{on, std::vector<float>(3 * static_cast<std::size_t>(on.voxel_count()))};
+    for (std::size_t n = 0; n < field.displacement.size(); ++n) {
+      field.displacement[n] = static_cast<float>(std::floor(9 * scenes::uniform(seed, n)) - 4) / 4;
+      if (n % 997 == 5) field.displacement[n] = std::numeric_limits<float>::quiet_NaN();
+    }
+    return field;
+  };
   const TransformChain chains[] = {{{field_on(grid, 1), field_on(grid, 2)}},
+                                   {{noise_on(between, 6), field_on(grid, 7)}},
+                                   {{field_on(between, 8), noise_on(between, 9)}},
                                    {{field_on(turned, 3), field_on(grid, 4), field_on(turned, 5)}}};
   const Volume source = scenes::wavy_volume(grid, PixelType::float32);
   for (const TransformChain& chain : chains) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -35,15 +36,23 @@ bool is_written_twice(const VolumePlan& plan, const WarpArguments& arguments, st
   return has_image_name(output) && (is_packed || has_extension(output, ".mgz"));
 }
 
+/// Processes that work on a volume at a time: each takes an output of its own, or reads the blocks
+/// of one that the first one writes.
+std::int64_t processes_of(const VolumePlan& plan, const WarpArguments& arguments) {
+  const std::int64_t launched = launched_count();
+  return shares_blocks(plan, arguments, static_cast<int>(launched))
+             ? launched
+             : std::min(launched, std::ssize(plan.outputs));
+}
+
 /// temporary_disk() without steps of a series that can be resumed, whose files may be packed.
 double scratch_bytes(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
   constexpr std::int64_t several = 2;  // the blocks of processes that share an output
   const bool shares = shares_blocks(plan, arguments, launched_count());
   if (shares) blocks = std::max(blocks, several);
-  // Each process takes an output of its own, or reads the blocks of one that the first one writes.
-  const double processes = launched_count();
-  const double writers = std::min(processes, static_cast<double>(plan.outputs.size()));
-  const double readers = shares ? processes : writers;
+  const auto readers = static_cast<double>(processes_of(plan, arguments));
+  const double writers =
+      shares ? std::min(readers, static_cast<double>(plan.outputs.size())) : readers;
   const double written =
       is_written_twice(plan, arguments, blocks) ? writers * output_bytes(plan, arguments) : 0;
   if (blocks == 0) return written;
@@ -75,22 +84,34 @@ void check_room(VolumePlan& plan, const WarpArguments& arguments, double bytes) 
 
 double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
   return scratch_bytes(plan, arguments, blocks) +
-         (may_resume_within(plan, arguments) ? output_bytes(plan, arguments) : 0);
+         (may_resume_within(plan, arguments) && !shares_blocks(plan, arguments, launched_count())
+              ? output_bytes(plan, arguments)
+              : 0);
 }
 
 void check_room(std::span<VolumePlan> plans, const WarpArguments& arguments) {
+  struct Share {
+    double bytes;  // of a process
+    std::int64_t processes;
+    VolumePlan* plan;
+  };
   // How many blocks there are is planned later, from the positions.
-  std::vector<std::pair<double, VolumePlan*>> all;
+  std::vector<Share> all;
   for (VolumePlan& plan : plans) {
-    all.emplace_back(scratch_bytes(plan, arguments, plan.memory_limit > 0 ? 2 : 0), &plan);
+    const std::int64_t processes = processes_of(plan, arguments);
+    const double bytes = scratch_bytes(plan, arguments, plan.memory_limit > 0 ? 2 : 0);
+    all.push_back({bytes / static_cast<double>(processes), processes, &plan});
   }
-  // At most so many volumes at a time: the largest ones.
-  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.first > b.first; });
-  const auto at_a_time =
-      std::min<std::size_t>(static_cast<std::size_t>(launched_count()), all.size());
+  // The processes are at the largest volumes at a time.
+  std::ranges::stable_sort(all, std::ranges::greater{}, &Share::bytes);
   double bytes = 0;
-  for (std::size_t n = 0; n < at_a_time; ++n) bytes += all[n].first;
-  check_room(*all.front().second, arguments, bytes);
+  std::int64_t left = launched_count();
+  for (const Share& share : all) {
+    const std::int64_t taken = std::min(left, share.processes);
+    bytes += static_cast<double>(taken) * share.bytes;
+    left -= taken;
+  }
+  check_room(*all.front().plan, arguments, bytes);
 }
 
 }  // namespace tetwarp::cli

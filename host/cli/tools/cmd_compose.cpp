@@ -102,10 +102,11 @@ void print_chain_notes(const std::string& output, const Grid& grid, const ChainN
                output, notes.outside, grid.voxel_count());
   }
   if (notes.straightened > 0) {
-    fmt::print(stderr,
-               "tetwarp: {}: {} of {} positions moved with straight tetrahedra, as the curved map "
-               "of theirs has no inverse there\n",
-               output, notes.straightened, grid.voxel_count());
+    fmt::print(
+        stderr,
+        "tetwarp: {}: {} times a position was mapped by the straight tetrahedron of its cell, "
+        "whose curved map has no inverse there\n",
+        output, notes.straightened);
   }
   if (notes.not_inverted > 0) {
     fmt::print(stderr,

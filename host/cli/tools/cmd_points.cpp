@@ -89,11 +89,10 @@ void print_kept(const PointsArguments& arguments,
   const std::size_t count = mapped.points.size();
   const std::int64_t outside = mapped.outside;
   if (mapped.straightened > 0) {
-    fmt::print(
-        stderr,
-        "tetwarp: {}: {} of {} points of {} move with straight tetrahedra, as the curved map "
-        "of theirs has no inverse there\n",
-        output, mapped.straightened, count, arguments.input);
+    fmt::print(stderr,
+               "tetwarp: {}: {} of {} points of {} are mapped by the straight tetrahedron of their "
+               "cell, whose curved map has no inverse there\n",
+               output, mapped.straightened, count, arguments.input);
   }
   if (outside == 0) return;
   fmt::print(stderr,

@@ -18,7 +18,6 @@ class DenseBodies {
   /// @pre check_problem(problem) has passed; global form
   DenseBodies(const ContactProblem& problem, double recovery_speed);
 
-  std::size_t contact_count() const { return contacts_.size(); }
   const Eigen::VectorXd& load() const { return load_; }      ///< b, [dofs], N s
   const Eigen::MatrixXd& system() const { return system_; }  ///< A, [dofs][dofs]
   /// x -> A^-1 x, [dofs].

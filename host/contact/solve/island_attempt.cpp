@@ -1,5 +1,5 @@
 /// @file island_attempt.cpp
-/// Newton's method on one island, and its cost.
+/// Newton's method and the method of multipliers on one island, and the cost of the former.
 #include "host/contact/solve/island_attempt.hpp"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include <tetwarp/contact.hpp>
 
@@ -49,6 +50,13 @@ class IslandAttempt {
   double* impulse() { return run_.state().impulse.data() + 3 * island().slot_begin; }
   std::int64_t size() const { return 3 * island().contact_count(); }
 
+  /// Sweeps that are allowed, of outcome().sweeps.
+  std::int64_t max_sweeps() const { return all_.options.max_sweeps - abandoned_; }
+  /// Counts the sweeps so far apart from outcome().sweeps, by which methods are chosen, until
+  /// add_abandoned().
+  void abandon_sweeps() { abandoned_ += std::exchange(outcome_.sweeps, 0); }
+  void add_abandoned() { outcome_.sweeps += std::exchange(abandoned_, 0); }
+
   bool is_over() const { return all_.budget != nullptr && all_.budget->is_over(); }
   void measure() { outcome_.sums = run_.measure(index_); }
   /// Error over allowed error, of the last measure().
@@ -72,6 +80,7 @@ class IslandAttempt {
   ContactRun<double>& run_;
   IslandOutcome& outcome_;
   std::optional<ContactProblem> part_;
+  std::int64_t abandoned_ = 0;
 };
 
 }  // namespace tetwarp

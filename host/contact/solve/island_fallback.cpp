@@ -53,8 +53,7 @@ bool IslandFallback::searches_before_sweeps() {
   constexpr std::int64_t few = 4096;
   if (attempt_.options().max_newton == 0 || has_other_blocks()) return false;
   const double step = attempt_.sweeps_per_newton_step();
-  const std::int64_t left =
-      std::max(attempt_.options().max_sweeps - attempt_.outcome().sweeps, few);
+  const std::int64_t left = std::max(attempt_.max_sweeps() - attempt_.outcome().sweeps, few);
   return factorizations * step < static_cast<double>(left);
 }
 
@@ -74,8 +73,11 @@ bool IslandFallback::takes_multipliers(const HostProblem& all, std::int64_t i) {
          tetwarp::takes_multipliers(all.problem, all.options, island.dof_end - island.dof_begin);
 }
 
+/// Of larger problems all sweeps come first: several threads share their islands.
 std::int64_t IslandFallback::first_sweeps(const HostProblem& all, std::int64_t i) {
-  return takes_multipliers(all, i) ? short_sweeps : all.options.max_sweeps;
+  constexpr std::int64_t few_contacts = 512;
+  const bool is_short = all.problem.contact_count() <= few_contacts && takes_multipliers(all, i);
+  return is_short ? short_sweeps : all.options.max_sweeps;
 }
 
 /// Sweeps as long as they promise to be cheaper, then the method of multipliers.
@@ -91,18 +93,42 @@ void IslandFallback::multiply() {
   const std::int64_t dofs = island.dof_end - island.dof_begin;
   const double step = sweeps_per_multiplier_step(dofs, island.contact_count());
   sweep_while_cheaper(multiplier_steps * step, short_sweeps);
+  if (!attempt_.is_done()) attempt_.multiply();
+  if (!attempt_.is_done()) sweep_from_guess();
+}
+
+/// All that other islands have first, as if nothing had been tried: Newton's method after other
+/// sweeps may take several times as many steps.
+void IslandFallback::sweep_from_guess() {
+  double* const impulse = attempt_.impulse();
+  const std::vector<double>& guess = attempt_.part().impulse_guess;
+  BestImpulses best(impulse, attempt_.size(), attempt_.excess());
+  std::fill_n(impulse, attempt_.size(), 0.0);
+  std::ranges::copy(guess, impulse);
+  attempt_.abandon_sweeps();
+  const double swept = attempt_.run().sweep_past_best(attempt_.index(), attempt_.max_sweeps(),
+                                                      ContactMethod::automatic);
+  attempt_.measure();
+  sweeps_ = SweepChoice();
+  left_ = 0;
   if (attempt_.is_done()) return;
-  const double before = attempt_.excess();
-  attempt_.multiply();
-  if (attempt_.excess() < before / 2) last_.clear();  // sweeps go on from the new impulses
+  best.keep(attempt_.run().best_impulse(attempt_.index()), swept);
+  last_.assign(impulse, impulse + attempt_.size());
+  best.restore();
+  attempt_.measure();
 }
 
 void IslandFallback::run() {
-  const std::int64_t most = std::min(attempt_.options().max_sweeps, search_sweeps);
+  run_methods();
+  attempt_.add_abandoned();
+}
+
+void IslandFallback::run_methods() {
+  const std::int64_t most = std::min(attempt_.max_sweeps(), search_sweeps);
   constexpr std::int64_t few = 64;
   if (attempt_.is_over()) return;
   if (!has_newton()) {
-    const bool allows_many = attempt_.options().max_sweeps >= search_sweeps;
+    const bool allows_many = attempt_.max_sweeps() >= search_sweeps;
     if (!clamp_contradicting({most, false}) && allows_many) certify_after_sweeps();
     return;
   }
@@ -164,12 +190,12 @@ void IslandFallback::sweep_while_cheaper(double newton_sweeps, std::int64_t leas
   double* const impulse = attempt_.impulse();
   BestImpulses best(impulse, attempt_.size(), attempt_.excess());
   std::copy(last_.begin(), last_.end(), impulse);
-  while (outcome.sweeps < attempt_.options().max_sweeps && !attempt_.is_over() &&
+  while (outcome.sweeps < attempt_.max_sweeps() && !attempt_.is_over() &&
          !prefers_newton(newton_sweeps, outcome.sweeps, left_)) {
     const double before = best.excess();
     const std::int64_t from = outcome.sweeps;
-    const double swept =
-        run.sweep_past_best(attempt_.index(), from + std::max(least, from / 2), sweeps_.current());
+    const std::int64_t end = std::min(from + std::max(least, from / 2), attempt_.max_sweeps());
+    const double swept = run.sweep_past_best(attempt_.index(), end, sweeps_.current());
     attempt_.measure();
     if (attempt_.is_done()) return;
     best.keep(run.best_impulse(attempt_.index()), swept);

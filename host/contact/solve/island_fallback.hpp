@@ -50,7 +50,9 @@ class IslandFallback {
   void certify_after_sweeps();
   void take_turns();
   void finish_automatic();
+  void run_methods();
   void multiply();
+  void sweep_from_guess();
   void sweep_while_cheaper(double newton_sweeps, std::int64_t least);
   bool clamp_contradicting(const ContradictionSearch& search);
   bool find_contradiction();
