@@ -20,6 +20,16 @@ def _lattice(seed):
     return rest, cells, rest + _random(rest.shape, seed + 1, -1, 1)
 
 
+def _ten_nodes(seed):
+    """Eight of its tetrahedra with middle nodes of their own, moved from the middles of the edges."""
+    rest, cells, _ = _lattice(seed)
+    edges = cells[:8][:, [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]].reshape(-1, 2)
+    middles = rest[edges].mean(axis=1)
+    new = len(rest) + np.arange(len(edges)).reshape(-1, 6)
+    rest = np.vstack([rest, middles])
+    return rest, np.hstack([cells[:8], new]), rest + _random(rest.shape, seed + 2, -1, 1) / 4
+
+
 def _problem(seed):
     """Three bodies of a mass each, two contacts between them."""
     turn = np.linalg.qr(_random((3, 3), seed))[0]
@@ -62,7 +72,12 @@ def _calls():
     samples = _random((9, 9, 9), 3, 0, 64)
     surface = tetwarp.boundary_surface(rest, cells)
     mesh = dict(rest=rest, cells=cells, deformed=deformed)
+    ten = dict(zip(("rest", "cells", "deformed"), _ten_nodes(9)))
     return {
+        "ten nodes": (_warp, dict(samples=samples, **ten)),
+        "points of ten nodes": (
+            lambda points, **mesh: tetwarp.transform_points(points, **mesh, return_owners=True),
+            dict(points=_random((40, 3), 5, 0, 8), **ten)),
         "warp": (_warp, dict(samples=samples, **mesh)),
         "labels": (_warp, dict(samples=samples.astype(np.int16), **mesh)),
         "components": (_warp, dict(samples=_random((9, 9, 9, 2), 4), **mesh)),

@@ -113,7 +113,8 @@ CALLS = {
                    dict(name="word", center="vector", stiffness="number", radius="number",
                         damping="number")),
     "shipped_scene": (tetwarp.shipped_scene, {}, dict(name="word")),
-    "read": (tetwarp.read, dict(path="none.nii"), dict(path="path", axes="word", step="integer")),
+    "read": (tetwarp.read, dict(path="none.nii"), dict(path="path", axes="word", step="integer",
+                                                          ten_nodes="word")),
     "write": (tetwarp.write, dict(path="a.nii", value=SAMPLES, grid=tetwarp.Grid((5, 5, 5))),
               dict(path="path", compress="integer")),
 }
