@@ -202,7 +202,7 @@ class RowLinks {
   }
 
   /// Adds the vectors of a field to eight points within it, if along each axis all or none lie
-  /// between voxels, with the bits of add_field() of each.
+  /// between voxels; finite vectors with the bits of add_field() of each.
   /// @returns false for other points, which are left as they are
   static bool add_field(const FieldView& field, const EightIndices& index, EightPositions& x) {
     if (index.inside != 0xff) return false;
