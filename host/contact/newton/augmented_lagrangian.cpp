@@ -27,9 +27,9 @@ constexpr std::int64_t most_dofs = 72;
 /// one more steps of the multipliers, which do not end far below it.
 constexpr double first_softness = 1e-4, least_softness = 1e-8;
 constexpr double softness_drop = 0.2;  ///< after few Newton steps, once eta is near
-constexpr double near_error = 3e-6;
-constexpr double share_of_allowed =
-    0.5;                               ///< error: a better end is a better start of the next step
+constexpr double near_error = 3e-6;    ///< eta
+/// Of the allowed error: a better end is a better start of the next step.
+constexpr double share_of_allowed = 0.5;
 constexpr std::int64_t patience = 15;  ///< Newton steps without half of the error
 constexpr int few_steps = 3;
 constexpr int minimize_limit = 8;     ///< Newton steps per step of the multipliers

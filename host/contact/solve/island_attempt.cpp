@@ -50,11 +50,11 @@ void IslandAttempt::polish(const NewtonLimits& limits) {
           });
 }
 
-void IslandAttempt::multiply() {
+void IslandAttempt::solve_by_multipliers() {
   improve("multipliers", outcome_.multiplier_steps,
           [&](const ContactOptions& options, std::vector<double>& impulse) {
-            return solve_by_multipliers(part(), options, run_.criteria()[index_of(index_)], impulse,
-                                        all_.budget);
+            return tetwarp::solve_by_multipliers(part(), options, run_.criteria()[index_of(index_)],
+                                                 impulse, all_.budget);
           });
 }
 

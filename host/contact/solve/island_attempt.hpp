@@ -67,7 +67,7 @@ class IslandAttempt {
   /// Does nothing where there is rolling friction, which it does not have.
   void polish(const NewtonLimits& limits);
   /// The method of multipliers from the current impulses, as polish().
-  void multiply();
+  void solve_by_multipliers();
   /// Sweeps that take as long as a step of Newton's method; infinity where it is not used.
   double sweeps_per_newton_step();
 

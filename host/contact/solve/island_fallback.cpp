@@ -80,8 +80,11 @@ std::int64_t IslandFallback::first_sweeps(const HostProblem& all, std::int64_t i
   return is_short ? short_sweeps : all.options.max_sweeps;
 }
 
-/// Sweeps as long as they promise to be cheaper, then the method of multipliers.
-void IslandFallback::multiply() {
+/// Sweeps as long as they promise to be cheaper, then the method of multipliers. Where that fails
+/// after few sweeps, all sweeps that other islands have follow; where these came first, they do not
+/// come again.
+void IslandFallback::try_multipliers() {
+  const bool is_short = attempt_.outcome().sweeps <= short_sweeps;
   const ContactIsland& island = attempt_.island();
   const std::vector<ContactEvent>& events = attempt_.outcome().events;
   if (events.size() > 1) {
@@ -89,12 +92,12 @@ void IslandFallback::multiply() {
     const double first = attempt_.excess() * events.front().error / least->error;
     left_ = sweeps_left(first, attempt_.excess(), attempt_.outcome().sweeps);
   }
-  sweeps_ = SweepChoice(ContactMethod::anderson);
+  if (is_short) sweeps_ = SweepChoice(ContactMethod::anderson);
   const std::int64_t dofs = island.dof_end - island.dof_begin;
   const double step = sweeps_per_multiplier_step(dofs, island.contact_count());
   sweep_while_cheaper(multiplier_steps * step, short_sweeps);
-  if (!attempt_.is_done()) attempt_.multiply();
-  if (!attempt_.is_done()) sweep_from_guess();
+  if (!attempt_.is_done()) attempt_.solve_by_multipliers();
+  if (!attempt_.is_done() && is_short) sweep_from_guess();
 }
 
 /// All that other islands have first, as if nothing had been tried: Newton's method after other
@@ -133,7 +136,7 @@ void IslandFallback::run_methods() {
     return;
   }
   if (is_automatic()) {
-    if (takes_multipliers(attempt_.all(), attempt_.index())) multiply();
+    if (takes_multipliers(attempt_.all(), attempt_.index())) try_multipliers();
     if (!attempt_.is_done()) sweep_while_cheaper(least_trial, usual_sweeps);
   }
   if (attempt_.is_done() || clamp_contradicting({std::min(most, few), true})) return;

@@ -51,7 +51,7 @@ class IslandFallback {
   void take_turns();
   void finish_automatic();
   void run_methods();
-  void multiply();
+  void try_multipliers();
   void sweep_from_guess();
   void sweep_while_cheaper(double newton_sweeps, std::int64_t least);
   bool clamp_contradicting(const ContradictionSearch& search);
