@@ -280,6 +280,35 @@ TEST_F(CliCurved, InvertTellsWhatDoesNotComeBack) {
   EXPECT_EQ(through.err.find("folds: 0 inverted"), std::string::npos) << through.err;
 }
 
+/// A pyramid of two curved tetrahedra on a hexahedron: what the bent diagonal moves into the
+/// hexahedron, its middle and the centers of both faces, comes back by that, and nothing folds.
+TEST_F(CliCurved, InvertCountsPlacesBesideHexahedra) {
+  const Mesh pyramid{{{0, 0, 0},
+                      {8, 0, 0},
+                      {8, 8, 0},
+                      {0, 8, 0},
+                      {0, 0, 8},
+                      {8, 0, 8},
+                      {8, 8, 8},
+                      {0, 8, 8},
+                      {4, 4, 16}},
+                     {{4, 5, 6, 8}, {4, 6, 7, 8}}};
+  CurvedMesh both = with_mid_nodes(pyramid);
+  both.mesh.hexes = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  const auto diagonal = static_cast<std::size_t>(both.mid_nodes[0][2]);
+  for (const double bend : {-1.0, 1.0}) {
+    std::vector<Point3> displacement(both.mesh.rest_positions.size(), Point3{0, 0, 0});
+    displacement[diagonal][2] = bend;
+    write_mesh(scene / "both.vtkhdf", both, {displacement});
+    const CommandResult result = run({"invert", "both.vtkhdf", "-o", "back.vtkhdf"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(result.out.find(", of 3 at curved faces within 1:") != std::string::npos, bend < 0)
+        << result.out;
+    EXPECT_EQ(run({"invert", "back.vtkhdf", "-o", "again.vtkhdf"}).err, "");
+  }
+}
+
 /// Tetrahedra of ten nodes and hexahedra in one file, whose points are the deformed ones.
 TEST_F(CliCurved, WarpsBesideHexahedraWithRestPositionsOfAnotherFile) {
   const Volume source = read_volume(scene / "volume.vtkhdf");

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
@@ -46,7 +47,7 @@ struct InverseCheck {
   double largest_error = 0;  // of points that are none of the above
 };
 
-/// Whether each tetrahedron is inverted; parts of hexahedra come last.
+/// Whether each tetrahedron is inverted; parts of hexahedra come last, tets_per_hex of each.
 std::vector<bool> inverted_tets(const Mesh& mesh, const std::vector<Point3>& deformed) {
   std::vector<bool> inverted;
   for (const auto& tet : with_split_hexes(mesh).tets) {
@@ -83,23 +84,41 @@ std::vector<Point3> points_to_check(const CurvedMesh& curved) {
   return points;
 }
 
-/// Whether a place may belong to one tetrahedron before and to the other one after the deformation,
+/// Whether a cell has a curved map, in place of which its straight one may be taken either way.
+bool is_curved_tet(const CurvedMesh& mesh, std::size_t cell) {
+  return cell < mesh.mesh.tets.size() && is_curved(mesh, cell);
+}
+
+/// Nodes of a cell; hexahedra come after all tetrahedra.
+std::span<const std::int32_t> nodes_of(const Mesh& mesh, std::size_t cell) {
+  const std::size_t tets = mesh.tets.size();
+  if (cell < tets) return mesh.tets[cell];
+  return mesh.hexes[cell - tets];
+}
+
+/// @param inverted  of inverted_tets()
+bool is_inverted(const Mesh& mesh, const std::vector<bool>& inverted, std::size_t cell) {
+  const std::size_t tets = mesh.tets.size();
+  if (cell < tets) return inverted[cell];
+  const std::size_t first = tets + (cell - tets) * std::size_t{tets_per_hex};
+  for (std::size_t part = first; part < first + tets_per_hex; ++part) {
+    if (inverted[part]) return true;
+  }
+  return false;
+}
+
+/// Whether a place may belong to one cell before and to the other one after the deformation,
 /// because ownership takes straight faces in place of curved ones: they have a node in common, one
-/// is curved and none is inverted.
-bool are_curved_neighbors(const CurvedMesh& mesh,
+/// is a curved tetrahedron and none is inverted.
+bool are_curved_neighbors(const CurvedMesh& curved,
                           const std::vector<bool>& inverted,
                           std::size_t one,
                           std::size_t other) {
-  const auto& tets = mesh.mesh.tets;
-  if (one == other || std::max(one, other) >= tets.size()) return false;
-  if (inverted[one] || inverted[other]) return false;
-  return (is_curved(mesh, one) || is_curved(mesh, other)) &&
-         std::ranges::find_first_of(tets[one], tets[other]) != tets[one].end();
-}
-
-/// Whether a cell may be mapped by its straight tetrahedron, one way or the other.
-bool is_straightened(const CurvedMesh& mesh, std::size_t cell) {
-  return cell < mesh.mesh.tets.size() && is_curved(mesh, cell);
+  const Mesh& mesh = curved.mesh;
+  if (one == other || !(is_curved_tet(curved, one) || is_curved_tet(curved, other))) return false;
+  if (is_inverted(mesh, inverted, one) || is_inverted(mesh, inverted, other)) return false;
+  const std::span<const std::int32_t> nodes = nodes_of(mesh, one);
+  return std::ranges::find_first_of(nodes, nodes_of(mesh, other)) != nodes.end();
 }
 
 InverseCheck check_inverse(const CurvedMesh& mesh, const std::vector<Point3>& deformed) {
@@ -123,7 +142,7 @@ InverseCheck check_inverse(const CurvedMesh& mesh, const std::vector<Point3>& de
                                     static_cast<std::size_t>(back.owners[p]))) {
       ++check.beside;
       check.beside_error = std::max(check.beside_error, error);
-    } else if (there.owners[p] != back.owners[p] || !is_straightened(mesh, owner)) {
+    } else if (there.owners[p] != back.owners[p] || !is_curved_tet(mesh, owner)) {
       ++check.folded;
     }
   }
