@@ -24,7 +24,7 @@ tetwarp_sources(tetwarp_io io/h5
   value_names.cpp)
 tetwarp_sources(tetwarp_io io/image
   image_header.cpp image_volume.cpp image_write.cpp meta_header.cpp mgh_header.cpp
-  nrrd_header.cpp vti_write.cpp)
+  nrrd_header.cpp nrrd_words.cpp vti_write.cpp)
 tetwarp_sources(tetwarp_io io/import
   coarse_surface.cpp merge_cells.cpp mesh_child.cpp mesh_import.cpp
   split_cells.cpp)

@@ -146,9 +146,13 @@ PixelType value_type(const std::vector<DicomSlice>& slices) {
   int bits = 0;
   for (const DicomSlice& slice : slices) {
     const double size = std::ldexp(1.0, slice.bits);
-    low = std::min(low, (slice.is_signed ? -size / 2 : 0) + slice.intercept);
-    high = std::max(high, (slice.is_signed ? size / 2 : size) - 1 + slice.intercept);
-    are_whole = are_whole && slice.slope == 1 && slice.intercept == std::nearbyint(slice.intercept);
+    for (const double stored :
+         {slice.is_signed ? -size / 2 : 0, (slice.is_signed ? size / 2 : size) - 1}) {
+      low = std::min(low, slice.slope * stored + slice.intercept);
+      high = std::max(high, slice.slope * stored + slice.intercept);
+    }
+    are_whole = are_whole && slice.slope == std::nearbyint(slice.slope) &&
+                slice.intercept == std::nearbyint(slice.intercept);
     bits = std::max(bits, slice.bits);
   }
   const auto holds = [&]<class T>(T) {

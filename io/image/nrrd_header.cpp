@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -13,57 +14,10 @@
 #include <tetwarp/error.hpp>
 
 #include "host/base/point3.hpp"
+#include "io/image/nrrd_words.hpp"
 
 namespace tetwarp {
 namespace {
-struct TypeName {
-  const char* name;
-  PixelType type;
-};
-constexpr TypeName type_names[] = {{"uint8", PixelType::uint8},
-                                   {"uchar", PixelType::uint8},
-                                   {"unsigned char", PixelType::uint8},
-                                   {"uint8_t", PixelType::uint8},
-                                   {"int8", PixelType::int8},
-                                   {"signed char", PixelType::int8},
-                                   {"int8_t", PixelType::int8},
-                                   {"uint16", PixelType::uint16},
-                                   {"ushort", PixelType::uint16},
-                                   {"unsigned short", PixelType::uint16},
-                                   {"unsigned short int", PixelType::uint16},
-                                   {"uint16_t", PixelType::uint16},
-                                   {"int16", PixelType::int16},
-                                   {"short", PixelType::int16},
-                                   {"short int", PixelType::int16},
-                                   {"signed short", PixelType::int16},
-                                   {"int16_t", PixelType::int16},
-                                   {"uint32", PixelType::uint32},
-                                   {"uint", PixelType::uint32},
-                                   {"unsigned int", PixelType::uint32},
-                                   {"uint32_t", PixelType::uint32},
-                                   {"int32", PixelType::int32},
-                                   {"int", PixelType::int32},
-                                   {"signed int", PixelType::int32},
-                                   {"int32_t", PixelType::int32},
-                                   {"uint64", PixelType::uint64},
-                                   {"unsigned long long", PixelType::uint64},
-                                   {"uint64_t", PixelType::uint64},
-                                   {"int64", PixelType::int64},
-                                   {"long long", PixelType::int64},
-                                   {"int64_t", PixelType::int64},
-                                   {"float", PixelType::float32},
-                                   {"double", PixelType::float64}};
-
-/// The axes of a space, and which of them point against RAS.
-struct Space {
-  const char* name;
-  const char* short_name;
-  std::array<bool, 3> is_negated;
-};
-constexpr Space spaces[] = {{"right-anterior-superior", "RAS", {false, false, false}},
-                            {"left-anterior-superior", "LAS", {true, false, false}},
-                            {"left-posterior-superior", "LPS", {true, true, false}}};
-
 std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   if (begin == std::string::npos) return "";
@@ -113,7 +67,10 @@ class NrrdReader {
       if (pair != std::string::npos && (colon == std::string::npos || pair < colon)) {
         header_.left_out.push_back(line.substr(0, pair));
       } else if (colon != std::string::npos) {
-        fields_[line.substr(0, colon)] = trimmed(line.substr(colon + 2));
+        const std::string written = line.substr(0, colon);
+        if (!fields_.emplace(nrrd_field(written), trimmed(line.substr(colon + 2))).second) {
+          fail(written, "is there twice in its header");
+        }
       } else {
         fail("", "is damaged: '" + line.substr(0, 40) + "' is no line of a header");
       }
@@ -154,8 +111,10 @@ class NrrdReader {
   }
   double real(const std::string& word, const std::string& field) const {
     double number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size()) {
+    const char* const last = word.data() + word.size();
+    const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+    const auto [end, error] = std::from_chars(word.data() + (has_plus ? 1 : 0), last, number);
+    if (error != std::errc() || end != last) {
       fail(field, "'" + word + "' is no number");
     }
     return number;
@@ -164,26 +123,25 @@ class NrrdReader {
   /// Type, and which axes are of space: all, or all but the first.
   void read_layout() {
     const std::string type = required("type");
-    const auto* const known =
-        std::find_if(std::begin(type_names), std::end(type_names),
-                     [&](const TypeName& entry) { return type == entry.name; });
-    if (known == std::end(type_names)) fail("type", "'" + type + "' is not read");
-    header_.type = known->type;
+    const std::optional<PixelType> known = nrrd_type(type);
+    if (!known) fail("type", "'" + type + "' is not read");
+    header_.type = *known;
     const std::int64_t dimension = whole(required("dimension"), "dimension");
     if (dimension != std::ssize(sizes_) || dimension < 2 || dimension > 5) {
       fail("dimension", "expected 2 to 5 axes, each with a size");
     }
-    const auto kinds = words_in(take("kinds").value_or(""));
+    const auto kinds = words_in(lower_case(take("kinds").value_or("")));
     const bool has_kinds = kinds.size() == sizes_.size();
     const auto is_space = [&](std::size_t axis) {
       return has_kinds ? kinds[axis] == "domain" || kinds[axis] == "space" : true;
     };
     const std::string directions =
         fields_.contains("space directions") ? fields_["space directions"] : "";
-    const bool is_last_step = sizes_.size() > 2 && (has_kinds ? !is_space(sizes_.size() - 1)
-                                                              : directions.ends_with("none"));
+    const bool is_last_step =
+        sizes_.size() > 2 &&
+        (has_kinds ? !is_space(sizes_.size() - 1) : lower_case(directions).ends_with("none"));
     const std::size_t with_steps = sizes_.size() - (is_last_step ? 1 : 0);
-    const bool is_first_none = directions.starts_with("none");
+    const bool is_first_none = lower_case(directions).starts_with("none");
     first_ = with_steps == 4 || is_first_none || (has_kinds && !is_space(0)) ? 1 : 0;
     if (has_kinds && first_ == 1 && is_space(0)) {
       fail("kinds",
@@ -209,48 +167,74 @@ class NrrdReader {
     }
   }
 
-  /// The number of the last axis in a field of one number per axis; NaN: none.
-  double of_last_axis(const std::string& field) {
+  /// The number of an axis in a field of one number per axis; NaN: none.
+  double of_axis(const std::string& field, std::size_t axis) {
     if (!fields_.contains(field)) return std::numeric_limits<double>::quiet_NaN();
     const auto words = words_in(fields_[field]);
     if (words.size() != sizes_.size()) fail(field, "expected one for every axis");
-    const bool is_none = words.back() == "NaN" || words.back() == "nan";
-    return is_none ? std::numeric_limits<double>::quiet_NaN() : real(words.back(), field);
+    return real(words[axis], field);
   }
 
   /// Times of the steps, whose axis is the last one.
   void read_steps() {
     const std::string units = take("units").value_or("");
     const double unit = units.ends_with("\"ms\"") ? 1e-3 : units.ends_with("\"us\"") ? 1e-6 : 1;
-    const double first = unit * of_last_axis("axis mins");
-    take("axis mins");
+    const std::size_t last = sizes_.size() - 1;
+    const double first = unit * of_axis("axis mins", last);
     try {
-      set_image_steps(static_cast<double>(sizes_.back()), first, unit * of_last_axis("spacings"),
+      set_image_steps(static_cast<double>(sizes_.back()), first, unit * of_axis("spacings", last),
                       header_);
     } catch (const std::invalid_argument& error) {
       fail("sizes", error.what());
     }
   }
 
+  /// Whether samples of an axis of space are at the ends of its extent, not in the middle of cells.
+  bool is_of_nodes(std::size_t axis) {
+    const auto words = words_in(lower_case(fields_.contains("centers") ? fields_["centers"] : ""));
+    return words.size() == sizes_.size() && words[first_ + axis] == "node";
+  }
+
+  /// Distance of samples along an axis of space: as given, by the ends of its extent, or 1.
+  double spacing_of(std::size_t axis) {
+    const double spacing = of_axis("spacings", first_ + axis);
+    if (std::isfinite(spacing)) return spacing;
+    const auto count = static_cast<double>(sizes_[first_ + axis] - (is_of_nodes(axis) ? 1 : 0));
+    const double length = of_axis("axis maxs", first_ + axis) - of_axis("axis mins", first_ + axis);
+    return std::isfinite(length) && length != 0 && count > 0 ? length / count : 1;
+  }
+
+  /// Of the first sample, where the extents of all axes of space have a beginning and samples a
+  /// distance; else the origin.
+  Point3 first_centers() {
+    Point3 centers{0, 0, 0};
+    for (std::size_t axis = 0; axis < of_space_; ++axis) {
+      const double low = of_axis("axis mins", first_ + axis);
+      const bool has_spacing = std::isfinite(of_axis("spacings", first_ + axis)) ||
+                               std::isfinite(of_axis("axis maxs", first_ + axis));
+      if (!std::isfinite(low) || !has_spacing) return {0, 0, 0};
+      centers[axis] = low + (is_of_nodes(axis) ? 0 : spacing_of(axis) / 2);
+    }
+    return centers;
+  }
+
   void read_axes() {
     std::array<bool, 3> is_negated{false, false, false};
     if (const auto space = take("space")) {
-      const auto* const known = std::find_if(
-          std::begin(spaces), std::end(spaces),
-          [&](const Space& entry) { return *space == entry.name || *space == entry.short_name; });
-      if (known == std::end(spaces)) {
-        fail("space", "'" + *space + "' is not read, expected one of RAS, LAS and LPS");
-      }
-      is_negated = known->is_negated;
+      const auto known = nrrd_space(*space);
+      if (!known) fail("space", "'" + *space + "' is not read, expected one of RAS, LAS and LPS");
+      is_negated = *known;
     }
     take("space dimension");
     std::array<Point3, 3> steps{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    Point3 origin{0, 0, 0};
+    const bool has_directions = fields_.contains("space directions");
     if (const auto directions = take("space directions")) {
       std::vector<std::string> parts;
       std::string joined;  // "(1, 0, 0)" may have blanks
       for (const std::string& word : words_in(*directions)) {
         joined += word;
-        if (joined != "none" && joined.back() != ')') continue;
+        if (lower_case(joined) != "none" && joined.back() != ')') continue;
         parts.push_back(joined);
         joined.clear();
       }
@@ -259,38 +243,34 @@ class NrrdReader {
         steps[axis] = vector(parts[first_ + axis], "space directions");
       }
       take("spacings");
-    } else if (const auto spacings = take("spacings")) {
-      const auto words = words_in(*spacings);
-      if (words.size() != sizes_.size()) fail("spacings", "expected one for every axis");
-      for (std::size_t axis = 0; axis < of_space_; ++axis) {
-        steps[axis][axis] = real(words[first_ + axis], "spacings");
-      }
+    } else {
+      for (std::size_t axis = 0; axis < of_space_; ++axis) steps[axis][axis] = spacing_of(axis);
+      origin = first_centers();
     }
+    for (const char* const used : {"spacings", "axis mins", "axis maxs", "centers"}) take(used);
     if (of_space_ == 2) steps[2] = unit(cross(steps[0], steps[1]));
-    const auto origin = take("space origin");
+    if (const auto given = take("space origin")) origin = vector(*given, "space origin");
     try {
-      set_image_axes(steps, origin ? vector(*origin, "space origin") : Point3{0, 0, 0}, is_negated,
-                     header_.grid);
+      set_image_axes(steps, origin, is_negated, header_.grid);
     } catch (const std::invalid_argument& error) {
-      fail("space directions", error.what());
+      fail(has_directions ? "space directions" : "spacings", error.what());
     }
   }
 
   void read_data() {
-    const std::string encoding = required("encoding");
+    const std::string encoding = lower_case(required("encoding"));
     header_.is_packed = encoding == "gzip" || encoding == "gz";
     if (!header_.is_packed && encoding != "raw") {
       fail("encoding", "'" + encoding + "' is not read, expected raw or gzip");
     }
     const auto endian = take("endian");
     if (!endian && size_of(header_.type) > 1) fail("endian", "is missing in its header");
-    header_.is_big_endian = endian == "big";
+    header_.is_big_endian = endian && lower_case(*endian) == "big";
     if (const auto skipped = take("line skip"); skipped && *skipped != "0") {
       fail("line skip", "is not read, expected 0");
     }
-    take("lineskip");
     const auto skip = take("byte skip");
-    const auto file = fields_.contains("data file") ? take("data file") : take("datafile");
+    const auto file = take("data file");
     if (file && (file->starts_with("LIST") || file->find('%') != std::string::npos)) {
       fail("data file", "samples in several files are not read");
     }
@@ -325,15 +305,12 @@ ImageHeader read_nrrd_header(const std::string& path) {
 }
 
 std::string nrrd_header_text(const ImageHeader& header) {
-  const auto* const known =
-      std::find_if(std::begin(type_names), std::end(type_names),
-                   [&](const TypeName& entry) { return header.type == entry.type; });
   const Grid& grid = header.grid;
   const bool has_components = header.components > 1, has_steps = !header.times.empty();
   const int dimension = 3 + (has_components ? 1 : 0) + (has_steps ? 1 : 0);
-  std::string text = "NRRD0004\n# written by tetwarp\ntype: " + std::string(known->name) +
-                     "\ndimension: " + std::to_string(dimension) +
-                     "\nspace: left-posterior-superior\nsizes:";
+  std::string text =
+      "NRRD0004\n# written by tetwarp\ntype: " + std::string(nrrd_type_name(header.type)) +
+      "\ndimension: " + std::to_string(dimension) + "\nspace: left-posterior-superior\nsizes:";
   if (has_components) text += " " + std::to_string(header.components);
   for (const std::int64_t size : grid.dims) text += " " + std::to_string(size);
   if (has_steps) text += " " + std::to_string(header.times.size());

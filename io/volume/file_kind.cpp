@@ -20,7 +20,10 @@ FileKind hdf5_kind(const std::string& path) {
     if (h5::is_group(file, "fclib_local") || h5::is_group(file, "fclib_global")) {
       return FileKind::contact_problem;
     }
-    if (!h5::is_group(file, "VTKHDF")) return FileKind::hdf5;
+    if (!h5::is_group(file, "VTKHDF")) {
+      // Exodus in netCDF-4, among others: meshes, which their names tell.
+      return has_mesh_extension(path) ? FileKind::unknown : FileKind::hdf5;
+    }
     const h5::Object root = h5::open_group(file, "VTKHDF");
     if (!h5::has_attribute(root, "Type")) return FileKind::other_vtkhdf;
     const std::string type = h5::read_text_attribute(root, "Type");

@@ -115,8 +115,10 @@ TEST(DicomStack, TakesTheSmallestTypeThatHoldsAllValues) {
         Case{8, false, 1, -1, PixelType::int16}, Case{12, false, 1, -1024, PixelType::int16},
         Case{16, false, 1, 0, PixelType::uint16}, Case{16, false, 1, -1024, PixelType::int32},
         Case{16, true, 1, 0, PixelType::int16}, Case{32, false, 1, 0, PixelType::float64},
-        Case{12, false, 1, 0.5, PixelType::float32}, Case{16, true, 0.1, 0, PixelType::float32},
-        Case{32, false, 0.1, 0, PixelType::float64}}) {
+        Case{12, false, 2, -10, PixelType::int16}, Case{8, false, -1, 255, PixelType::uint8},
+        Case{8, false, -2, 0, PixelType::int16}, Case{16, true, 2, 0, PixelType::int32},
+        Case{16, false, 1e5, 0, PixelType::float64}, Case{12, false, 1, 0.5, PixelType::float32},
+        Case{16, true, 0.1, 0, PixelType::float32}, Case{32, false, 0.1, 0, PixelType::float64}}) {
     std::mt19937 random(5);
     const Place place = random_place(random);
     std::vector<DicomSlice> slices = slices_at(place, place.normal, 3);

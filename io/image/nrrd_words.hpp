@@ -1,0 +1,27 @@
+/// @file nrrd_words.hpp
+/// Names and words in NRRD headers, which have no case.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+
+#include <tetwarp/volume.hpp>
+
+namespace tetwarp {
+
+/// With small letters in place of A to Z.
+std::string lower_case(std::string text);
+
+/// The usual name of a field: in small letters, with its blanks where it may be one word.
+std::string nrrd_field(const std::string& written);
+
+/// The type of samples; nothing: it is not read.
+std::optional<PixelType> nrrd_type(const std::string& name);
+
+/// A name that nrrd_type() knows.
+const char* nrrd_type_name(PixelType type);
+
+/// Which axes of a space point against RAS; nothing: it is not read.
+std::optional<std::array<bool, 3>> nrrd_space(const std::string& written);
+
+}  // namespace tetwarp
