@@ -83,6 +83,8 @@ if(TETWARP_PYTHON3)
   endforeach()
   add_test(NAME dicom COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_dicom.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME itk_spaces COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_itk_spaces.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME labels COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_labels.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME walk COMMAND ${TETWARP_PYTHON3}
@@ -91,7 +93,7 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME film COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader dicom labels walk simulation film PROPERTIES
+  set_tests_properties(vtk_reader dicom itk_spaces labels walk simulation film PROPERTIES
     LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
@@ -148,7 +150,10 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_render.cpp
   tests/cli/test_cli_simulate_surfaces.cpp
   tests/cli/test_cli_simulate_volumes.cpp
-  tests/cli/test_cli_field_memory.cpp)
+  tests/cli/test_cli_field_memory.cpp
+  tests/cli/test_cli_steps.cpp
+  host/cli/tools/field_inverse.cpp
+  tests/cli/test_field_inverse.cpp)
 target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)
 if(TETWARP_LONG_TESTS)

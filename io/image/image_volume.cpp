@@ -7,11 +7,13 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,7 @@
 #include "io/image/meta_header.hpp"
 #include "io/image/mgh_header.hpp"
 #include "io/image/nrrd_header.hpp"
+#include "io/nifti/nifti_components.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
 namespace tetwarp {
@@ -120,12 +123,24 @@ void swap_bytes(std::byte* samples, std::size_t size, std::size_t count) {
     std::reverse(samples + n * size, samples + (n + 1) * size);
 }
 
+/// The array; of components along LPS with facts that tell them.
+/// @throws IoError  as component_map()
+ArrayHeader array_of(const std::string& path, const ImageHeader& header, Axes axes) {
+  ArrayHeader array{image_array, header.type, header.components};
+  if (axes == Axes::ras) return array;
+  array.nifti = default_nifti_facts(header.components);
+  array.nifti->component_axes = axes;
+  static_cast<void>(
+      component_map(path, header.type, header.components, array.nifti->intent_code, axes));
+  return array;
+}
+
 class ImageSource : public VolumeSource {
  public:
   ImageSource(const std::string& path, std::int64_t step, const VolumeReadOptions& options)
       : path_(path),
         header_(read_header(path)),
-        array_{image_array, header_.type, header_.components},
+        array_(array_of(path, header_, options.axes)),
         scratch_(options.scratch),
         step_(step),
         file_(header_.data_file, path) {
@@ -167,11 +182,21 @@ class ImageSource : public VolumeSource {
     if (is_other && size > 1) {
       swap_bytes(out, size, voxels * static_cast<std::size_t>(header_.components));
     }
+    if (array_.nifti) turn({out, header_.voxel_bytes() * voxels});
   }
 
  private:
   std::int64_t bytes() const {
     return header_.grid.voxel_count() * static_cast<std::int64_t>(header_.voxel_bytes());
+  }
+  /// From LPS to RAS.
+  void turn(std::span<std::byte> samples) const {
+    const std::array<bool, 9> turned = turned_components(header_.components);
+    const std::size_t size = size_of(header_.type);
+    for (std::size_t s = 0; s < samples.size() / size; ++s) {
+      if (!turned[s % static_cast<std::size_t>(header_.components)]) continue;
+      negate_samples(header_.type, samples.subspan(s * size, size));
+    }
   }
   /// Reads over what is packed before the samples of the step.
   void skip(Unpacker& unpacker) const {
@@ -233,11 +258,11 @@ bool is_image(const std::string& path) {
   return is_nrrd(path) || is_meta_image(path) || is_mgh(path);
 }
 
-VolumeHeader read_image_volume_header(const std::string& path) {
+VolumeHeader read_image_volume_header(const std::string& path, Axes axes) {
   const ImageHeader header = read_header(path);
   VolumeHeader volume;
   volume.grid = header.grid;
-  volume.arrays = {{image_array, header.type, header.components}};
+  volume.arrays = {array_of(path, header, axes)};
   volume.active = image_array;
   volume.left_out = header.left_out;
   if (header.is_series) check_size(path, header, OpenFile(header.data_file, path));

@@ -7,11 +7,13 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <tetwarp/itk_space.hpp>
 #include <vector>
 
 #include "io/files/extension.hpp"
@@ -43,6 +45,23 @@ std::string samples_of(const std::string& path, bool is_packed) {
   return stem + (is_packed ? ".zraw" : ".raw");
 }
 
+/// Factors of an array's components, as the file holds them: displacement fields along LPS axes in
+/// millimeters, vectors and tensors along their NiftiFacts' axes. Nothing: they stay.
+std::optional<std::array<double, 9>> factors_of(const std::string& path, const ArrayHeader& array) {
+  const NiftiFacts facts = array.nifti.value_or(default_nifti_facts(array.components));
+  if (array.is_itk_field) {
+    const Point3 factor = ratio(itk_factor(facts), {-1, -1, 1});
+    return std::array<double, 9>{factor[0], factor[1], factor[2]};
+  }
+  if (facts.component_axes == Axes::ras) return std::nullopt;
+  static_cast<void>(component_map(path, array.type, array.components, facts.intent_code,
+                                  Axes::lps));  // refuses what cannot be turned
+  const std::array<bool, 9> turned = turned_components(array.components);
+  std::array<double, 9> factors{};
+  for (std::size_t c = 0; c < factors.size(); ++c) factors[c] = turned[c] ? -1 : 1;
+  return factors;
+}
+
 class ImageSink : public VolumeSink {
  public:
   ImageSink(const std::string& path,
@@ -52,10 +71,12 @@ class ImageSink : public VolumeSink {
             bool is_temporal)
       : path_(path),
         format_(*format_of(path)),
-        is_itk_field_(array.is_itk_field),
+        factors_(factors_of(path, array)),
         is_temporal_(is_temporal),
         level_(options.compress) {
-    header_.grid = grid;
+    // ITK and 3D Slicer take the positions of these formats as millimeters.
+    const bool is_of_itk = format_ != ImageFormat::mgh && array.nifti;
+    header_.grid = is_of_itk ? scaled(grid, itk_factor(*array.nifti)) : grid;
     header_.type = array.type;
     header_.components = array.components;
     // .mgz is packed, .mgh is not.
@@ -115,7 +136,7 @@ class ImageSink : public VolumeSink {
                      [&](std::int64_t in_grid, std::int64_t in_region, std::int64_t count) {
                        const std::byte* part = in + in_region * size;
                        const auto bytes = static_cast<std::size_t>(count * size);
-                       if (is_itk_field_ || format_ == ImageFormat::mgh) {
+                       if (factors_ || format_ == ImageFormat::mgh) {
                          turned.assign(part, part + bytes);
                          turn(turned);
                          part = turned.data();
@@ -173,13 +194,15 @@ class ImageSink : public VolumeSink {
     if (!write_at(descriptor_, text.data(), text.size(), 0)) fail();
   }
 
-  /// Samples as they are stored: displacements in LPS in place of RAS, of FreeSurfer's images in
-  /// big-endian order.
+  /// Samples as they are stored: with their factors, of FreeSurfer's images in big-endian order.
   void turn(std::span<std::byte> samples) const {
     const std::size_t size = size_of(header_.type);
     for (std::size_t s = 0; s < samples.size() / size; ++s) {
       const std::span<std::byte> sample = samples.subspan(s * size, size);
-      if (is_itk_field_ && s % 3 < 2) negate_samples(header_.type, sample);
+      const std::size_t component = s % static_cast<std::size_t>(header_.components);
+      if (factors_ && (*factors_)[component] != 1) {
+        scale_samples(header_.type, (*factors_)[component], sample);
+      }
       const bool is_little = std::endian::native == std::endian::little;
       if (format_ == ImageFormat::mgh && is_little) std::ranges::reverse(sample);
     }
@@ -250,7 +273,7 @@ class ImageSink : public VolumeSink {
 
   std::string path_;
   ImageFormat format_;
-  bool is_itk_field_;
+  std::optional<std::array<double, 9>> factors_;  ///< by component
   bool is_temporal_;
   int level_;
   ImageHeader header_;

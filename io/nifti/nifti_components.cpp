@@ -60,7 +60,7 @@ void negate_samples(PixelType type, std::span<std::byte> samples) {
 }
 
 void scale_samples(PixelType type, double factor, std::span<std::byte> samples) {
-  const auto scaled = [factor]<class T>(T sample) { return static_cast<T>(factor * sample); };
+  const auto scaled = [factor]<class T>(T sample) { return static_cast<T>(0 + factor * sample); };
   type == PixelType::float32 ? change_each<float>(samples, scaled)
                              : change_each<double>(samples, scaled);
 }

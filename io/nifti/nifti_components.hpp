@@ -44,7 +44,7 @@ ComponentMap itk_field_map(const std::string& path,
 /// Negates samples of float32 or float64 in place; zero stays positive.
 void negate_samples(PixelType type, std::span<std::byte> samples);
 
-/// Multiplies samples of float32 or float64 in place.
+/// Multiplies samples of float32 or float64 in place; zero stays positive.
 void scale_samples(PixelType type, double factor, std::span<std::byte> samples);
 
 }  // namespace tetwarp

@@ -64,7 +64,7 @@ struct VolumeHeader {
   std::vector<double> times;            ///< one per step; empty: a static file
 };
 
-/// Choices for NIfTI files and DICOM series; others ignore them.
+/// Choices of readers of volumes; `axes` for NIfTI, NRRD and MetaImage files.
 struct VolumeReadOptions {
   Axes axes = Axes::ras;  ///< of the components in the file, as of read_nifti()
   /// A file, which need not exist. In its folder a step of a gzip file is unpacked before regions
@@ -142,8 +142,11 @@ struct MeshHeader {
 
 /// Choices of MeshReader.
 struct MeshReadOptions {
-  std::int64_t rest_step = 0;  ///< where points move: the step whose points are the rest positions
-  /// Another mesh file with as many nodes, whose points are the rest positions.
+  /// The step whose points are the rest positions, where points move: of `rest_file`, for which
+  /// nothing is an error then, else of the mesh, for which it is 0.
+  std::optional<std::int64_t> rest_step = {};
+  /// Another mesh file with as many nodes, whose points are the rest positions. A mesh with a
+  /// displacement must have the same points.
   std::optional<std::string> rest_file = {};
   /// For files of Gmsh and VTK; its axes also for `rest_file`, and `keeps_curved` for all.
   MeshImportOptions import = {};

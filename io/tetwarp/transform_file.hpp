@@ -1,6 +1,7 @@
 /// @file transform_file.hpp
 /// Displacement fields, affine transforms and splines of ITK, ANTs, NiftyReg and FSL.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -40,6 +41,12 @@ struct TransformReadOptions {
   std::string image = {};  ///< file of the image to warp, to whose voxels fields of FSL lead
   /// As of VolumeReadOptions, for fields of which regions are read.
   std::string scratch = {};
+  /// File of an image. Transforms of ITK are turned from the places where ITK has its voxels, in
+  /// millimeters, to its world: the unit and the forms of its NIfTI header. Empty: `image`; without
+  /// either the world is RAS in millimeters.
+  std::string world = {};
+  /// Of a displacement field with several steps; without it such a file is an error.
+  std::optional<std::int64_t> step = {};
 };
 
 /// True for what read_transform() reads: names that end in .tfm, .txt or .mat, HDF5 files of ITK,
@@ -54,17 +61,22 @@ struct TransformParts {
   std::vector<FieldReader> fields;  ///< one per link of the transform; of a field: it reads them
 };
 
+/// Steps of a displacement field in an image or a volume; 1 of any other transform.
+TETWARP_IO_EXPORT std::int64_t transform_step_count(const std::string& path,
+                                                    const TransformReadOptions& options = {});
+
 /// Reads a transform from positions of the output to positions in the source, as resamplers take
 /// it, and turns it to RAS.
 ///
 /// - ITK's text (.tfm, .txt), MATLAB (.mat) and HDF5 files: affine, rigid, similarity, scale and
 ///   translation transforms, displacement fields, cubic B-splines and composites of these, in LPS
+///   and mm
 /// - NIfTI displacement fields. The intent code states the axes of the components: VECTOR is LPS
 ///   and mm (ITK, ANTs), DISPVECT is RAS in the header's unit, VECTOR named NREG_TRANS is
 ///   NiftyReg's: displacements or positions in RAS. Any other needs `axes`
 /// - Warp fields of FSL (intent 2006): relative or absolute, in scaled voxels of the field's and
 ///   the image's grid
-/// - NRRD files and MetaImages of three components: LPS, as ITK and 3D Slicer write them
+/// - NRRD files and MetaImages of three components: LPS and mm, as ITK and 3D Slicer write them
 /// - the array `tetwarp_displacement` of a VTKHDF volume, as `tetwarp warp` writes it
 /// @throws IoError  on other transforms, files that do not tell their convention, damaged files
 TETWARP_IO_EXPORT TransformFile read_transform(const std::string& path,

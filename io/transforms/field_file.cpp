@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <tetwarp/io.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <utility>
 
 #include "io/h5/h5.hpp"
@@ -20,8 +21,7 @@ constexpr int vector_intent = 1007;
 
 /// How the numbers of a field are meant.
 struct FieldConvention {
-  Axes axes;             ///< of the components
-  bool is_in_mm;         ///< else in the unit of the header
+  bool is_of_itk;        ///< along LPS axes in mm; else along RAS axes in the header's unit
   bool holds_positions;  ///< else displacements
   std::string said_by;   ///< origin of the convention: a header field, or an option
 };
@@ -29,20 +29,20 @@ struct FieldConvention {
 FieldConvention convention_of(const std::string& path,
                               const NiftiFacts& facts,
                               const std::optional<Axes>& axes) {
-  if (axes) return {*axes, *axes == Axes::lps, false, "--axes"};
+  if (axes) return {*axes == Axes::lps, false, "--axes"};
   if (facts.intent_code == nifti_displacement_intent) {
-    return {Axes::ras, false, false, "intent DISPVECT"};
+    return {false, false, "intent DISPVECT"};
   }
   if (facts.intent_code == vector_intent && facts.intent_name == "NREG_TRANS") {
     const double kind = facts.intent_p[0];
-    if (kind == 0) return {Axes::ras, false, true, "NiftyReg's deformation field"};
-    if (kind == 1) return {Axes::ras, false, false, "NiftyReg's displacement field"};
+    if (kind == 0) return {false, true, "NiftyReg's deformation field"};
+    if (kind == 1) return {false, false, "NiftyReg's displacement field"};
     throw IoError(path, "",
                   "is a transform of NiftyReg, but neither a displacement nor a deformation field; "
                   "convert it by reg_transform -disp");
   }
   if (facts.intent_code == vector_intent) {
-    return {Axes::lps, true, false, "intent VECTOR, as ITK and ANTs write it"};
+    return {true, false, "intent VECTOR, as ITK and ANTs write it"};
   }
   throw IoError(path, "",
                 "its intent " + std::to_string(facts.intent_code) +
@@ -50,17 +50,20 @@ FieldConvention convention_of(const std::string& path,
                     "ITK or ANTs applies, --axes ras for displacements along NIfTI's axes");
 }
 
-/// Millimeters of a unit of length of a NIfTI header.
-double millimeters(const NiftiFacts& facts) {
-  const int unit = facts.xyzt_units & 7;
-  return unit == 1 ? 1000 : unit == 3 ? 0.001 : 1;
+/// From displacements along LPS in millimeters to those of a world with this factor of ITK's space.
+Point3 from_lps(const Point3& world) {
+  return ratio({-1, -1, 1}, world);
 }
 
 /// The numbers of a field's file.
 class FieldNumbers {
  public:
-  FieldNumbers(const std::string& path, const std::string& array, const VolumeReadOptions& options)
-      : path_(path), reader_(path, array, 0, options) {
+  FieldNumbers(const std::string& path,
+               const std::string& array,
+               const TransformReadOptions& options)
+      : path_(path),
+        reader_(
+            path, array, options.step.value_or(0), VolumeReadOptions{.scratch = options.scratch}) {
     const ArrayHeader& header = reader_.array();
     if (header.components != 3) {
       throw IoError(path, header.name,
@@ -80,13 +83,16 @@ class FieldNumbers {
             reader_.unpacked_bytes()};
   }
 
-  /// @param numbers  out, of a region, each multiplied by `scale`
-  void read(const Region& region, double scale, float* numbers) const {
+  /// @param numbers  out, of a region, multiplied by `factor` component by component
+  void read(const Region& region, const Point3& factor, float* numbers) const {
     const auto count = static_cast<std::size_t>(3 * region.voxel_count());
+    const auto changed = [&](std::size_t n, double number) {
+      return static_cast<float>(0 + factor[n % 3] * number);  // no -0
+    };
     if (is_single()) {
       reader_.read(region, numbers);
-      for (std::size_t n = 0; scale != 1 && n < count; ++n) {
-        numbers[n] = static_cast<float>(scale * static_cast<double>(numbers[n]));
+      for (std::size_t n = 0; factor != Point3{1, 1, 1} && n < count; ++n) {
+        numbers[n] = changed(n, static_cast<double>(numbers[n]));
       }
       return;
     }
@@ -94,7 +100,7 @@ class FieldNumbers {
     h5::check_memory(path_, reader_.array().name, bytes);
     const auto wide = std::make_unique_for_overwrite<double[]>(count);
     reader_.read(region, wide.get());
-    for (std::size_t n = 0; n < count; ++n) numbers[n] = static_cast<float>(scale * wide[n]);
+    for (std::size_t n = 0; n < count; ++n) numbers[n] = changed(n, wide[n]);
   }
 
  private:
@@ -105,17 +111,20 @@ class FieldNumbers {
 };
 
 /// A field of these numbers.
-/// @param change  makes the displacements of a region of its numbers
-template <class Change>
+/// @param place   factor of the grid's positions
+/// @param factor  of the components of the numbers
+/// @param change  makes the displacements of a region of the numbers; may be empty
 TransformParts parts_of(const std::shared_ptr<const FieldNumbers>& numbers,
-                        double scale,
+                        const Point3& place,
+                        const Point3& factor,
                         std::string convention,
-                        Change change) {
-  const auto read = [numbers, scale, change](const Region& region, float* displacement) {
-    numbers->read(region, scale, displacement);
-    change(region, displacement);
+                        const std::function<void(const Region&, float*)>& change = {}) {
+  const auto read = [numbers, factor, change](const Region& region, float* displacement) {
+    numbers->read(region, factor, displacement);
+    if (change) change(region, displacement);
   };
-  return {{DisplacementField{numbers->grid(), {}}, std::move(convention)}, {numbers->reader(read)}};
+  return {{DisplacementField{scaled(numbers->grid(), place), {}}, std::move(convention)},
+          {numbers->reader(read)}};
 }
 
 /// Positions minus those of their voxels.
@@ -135,47 +144,46 @@ void subtract_places(const Grid& grid, const Region& region, float* positions) {
 }
 }  // namespace
 
-TransformParts open_nifti_field(const std::string& path, const TransformReadOptions& options) {
+TransformParts open_nifti_field(const std::string& path,
+                                const TransformReadOptions& options,
+                                const Point3& world) {
   const NiftiFacts facts = read_nifti_facts(path);
   const FieldConvention convention = convention_of(path, facts, options.axes);
-  // ITK turns positions and components only of headers with a form.
-  const bool has_form = facts.sform_code > 0 || facts.qform_code > 0;
-  const Axes turned = has_form ? convention.axes : Axes::ras;
-  const auto numbers = std::make_shared<const FieldNumbers>(
-      path, "", VolumeReadOptions{.axes = turned, .scratch = options.scratch});
-  const std::string said = std::string(convention.holds_positions ? "positions" : "displacements") +
-                           " along " +
-                           (turned == Axes::lps ? "LPS"
-                            : has_form          ? "RAS"
-                                                : "the header's") +
-                           " axes in " + (convention.is_in_mm ? "mm" : "the header's unit") + " (" +
-                           convention.said_by + ")";
-  return parts_of(numbers, convention.is_in_mm ? 1 / millimeters(facts) : 1, said,
-                  [grid = numbers->grid(), holds_positions = convention.holds_positions](
-                      const Region& region, float* displacement) {
-                    if (holds_positions) subtract_places(grid, region, displacement);
-                  });
+  const auto numbers = std::make_shared<const FieldNumbers>(path, "", options);
+  if (convention.is_of_itk) {
+    // ITK turns the positions of headers with a form alone, and components never.
+    const bool has_form = facts.sform_code > 0 || facts.qform_code > 0;
+    return parts_of(numbers, ratio(itk_factor(facts), world), from_lps(world),
+                    std::string("displacements along ") + (has_form ? "LPS" : "the header's") +
+                        " axes in mm (" + convention.said_by + ")");
+  }
+  std::function<void(const Region&, float*)> change;
+  if (convention.holds_positions) {
+    change = [grid = numbers->grid()](const Region& region, float* displacement) {
+      subtract_places(grid, region, displacement);
+    };
+  }
+  return parts_of(numbers, {1, 1, 1}, {1, 1, 1},
+                  std::string(convention.holds_positions ? "positions" : "displacements") +
+                      " along RAS axes in the header's unit (" + convention.said_by + ")",
+                  change);
 }
 
-TransformParts open_image_field(const std::string& path, const TransformReadOptions& options) {
+TransformParts open_image_field(const std::string& path,
+                                const TransformReadOptions& options,
+                                const Point3& world) {
   const bool is_lps = options.axes.value_or(Axes::lps) == Axes::lps;
-  return parts_of(
-      std::make_shared<const FieldNumbers>(path, "", VolumeReadOptions{.scratch = options.scratch}),
-      1,
-      std::string("displacements along ") + (is_lps ? "LPS" : "RAS") +
-          (options.axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them"),
-      [is_lps](const Region& region, float* displacement) {
-        for (std::int64_t n = 0; is_lps && n < 3 * region.voxel_count(); ++n) {
-          if (n % 3 < 2) displacement[n] = 0 - displacement[n];
-        }
-      });
+  const Point3 ras_mm{1, 1, 1};
+  return parts_of(std::make_shared<const FieldNumbers>(path, "", options), ratio(ras_mm, world),
+                  is_lps ? from_lps(world) : ratio(ras_mm, world),
+                  std::string("displacements along ") + (is_lps ? "LPS" : "RAS") +
+                      (options.axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them"));
 }
 
-TransformParts open_volume_field(const std::string& path) {
-  return parts_of(
-      std::make_shared<const FieldNumbers>(path, "tetwarp_displacement", VolumeReadOptions{}), 1,
-      "displacements along the file's axes (array tetwarp_displacement)",
-      [](const Region&, float*) {});
+TransformParts open_volume_field(const std::string& path, const TransformReadOptions& options) {
+  return parts_of(std::make_shared<const FieldNumbers>(path, "tetwarp_displacement", options),
+                  {1, 1, 1}, {1, 1, 1},
+                  "displacements along the file's axes (array tetwarp_displacement)");
 }
 
 void fail_not_finite(const std::string& path, const std::array<std::int64_t, 3>& voxel) {

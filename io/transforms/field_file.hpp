@@ -9,10 +9,15 @@
 
 namespace tetwarp {
 
+/// @param world     itk_factor() of the positions that the field is for
 /// @throws IoError  as open_transform()
-TransformParts open_nifti_field(const std::string& path, const TransformReadOptions& options);
-TransformParts open_image_field(const std::string& path, const TransformReadOptions& options);
-TransformParts open_volume_field(const std::string& path);
+TransformParts open_nifti_field(const std::string& path,
+                                const TransformReadOptions& options,
+                                const Point3& world);
+TransformParts open_image_field(const std::string& path,
+                                const TransformReadOptions& options,
+                                const Point3& world);
+TransformParts open_volume_field(const std::string& path, const TransformReadOptions& options);
 
 /// @throws IoError  about a voxel whose displacement is not finite
 [[noreturn]] void fail_not_finite(const std::string& path,

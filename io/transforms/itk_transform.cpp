@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 #include <tetwarp/error.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <utility>
 
 namespace tetwarp {
@@ -130,10 +131,15 @@ void check_count(const std::string& path,
       "expected " + std::to_string(expected) + " " + what + ", got " + std::to_string(count));
 }
 
-/// From LPS to RAS.
-AffineTransform in_ras(AffineTransform affine) {
-  for (const std::size_t mixed : {2, 5, 6, 7}) affine.matrix[mixed] = 0 - affine.matrix[mixed];
-  for (const std::size_t axis : {0, 1}) affine.offset[axis] = 0 - affine.offset[axis];
+/// Between positions that are multiplied by a factor, as scaled() multiplies those of a grid.
+AffineTransform scaled(AffineTransform affine, const Point3& factor) {
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      double& entry = affine.matrix[3 * row + n];
+      entry = 0 + factor[row] / factor[n] * entry;  // no -0
+    }
+    affine.offset[row] = 0 + factor[row] * affine.offset[row];
+  }
   return affine;
 }
 
@@ -154,10 +160,10 @@ AffineTransform affine_of(const std::string& path,
     affine.offset[axis] = center[axis] - turned[axis];
     if (kind.translation != no_translation) affine.offset[axis] += p[kind.translation + axis];
   }
-  return in_ras(affine);
+  return affine;
 }
 
-/// The grid of fixed parameters: sizes, origin, spacing, direction by rows, in LPS.
+/// The grid of fixed parameters: sizes, origin, spacing, direction by rows.
 Grid grid_of(const std::string& path, const ItkTransform& transform) {
   const std::vector<double>& f = transform.fixed;
   check_count(path, transform.type, f.size(), 18,
@@ -169,10 +175,9 @@ Grid grid_of(const std::string& path, const ItkTransform& transform) {
                     "has a size of " + std::to_string(f[axis]) + ", expected 1 to 2^30");
     }
     grid.dims[axis] = static_cast<std::int64_t>(f[axis]);
-    const double sign = axis < 2 ? -1 : 1;
-    grid.origin[axis] = sign * f[3 + axis];
+    grid.origin[axis] = f[3 + axis];
     grid.spacing[axis] = f[6 + axis];
-    for (std::size_t n = 0; n < 3; ++n) grid.direction[3 * axis + n] = sign * f[9 + 3 * axis + n];
+    for (std::size_t n = 0; n < 3; ++n) grid.direction[3 * axis + n] = f[9 + 3 * axis + n];
   }
   try {
     check_grid(grid, "its grid");
@@ -190,8 +195,9 @@ Grid grid_of(const std::string& path, const ItkTransform& transform) {
 /// Reads displacements from parameters, as many rows at a time as follow each other in the file.
 class ItkField {
  public:
-  ItkField(const Grid& grid, ItkTransform transform)
-      : grid_(grid), transform_(std::move(transform)) {}
+  /// @param factor  of the numbers, component by component
+  ItkField(const Grid& grid, ItkTransform transform, const Point3& factor)
+      : grid_(grid), transform_(std::move(transform)), factor_(factor) {}
 
   double chunk_bytes() const {
     return transform_.chunk_bytes +
@@ -226,7 +232,8 @@ class ItkField {
       for (std::int64_t r = 0; r < count; ++r) {
         const double* const number = read.data() + width * r;
         for (std::int64_t n = 3 * region.begin[0]; n < 3 * region.end[0]; ++n) {
-          *displacement++ = static_cast<float>(n % 3 < 2 ? 0 - number[n] : number[n]);
+          const double factor = factor_[static_cast<std::size_t>(n % 3)];
+          *displacement++ = static_cast<float>(0 + factor * number[n]);
         }
       }
     }
@@ -242,11 +249,14 @@ class ItkField {
 
   Grid grid_;
   ItkTransform transform_;
+  Point3 factor_;
 };
 
 /// ITK stores all x coefficients, then y, then z.
-BSplineTransform spline_of(const std::string& path, const ItkTransform& transform) {
-  BSplineTransform spline{grid_of(path, transform), {}};
+BSplineTransform spline_of(const std::string& path,
+                           const ItkTransform& transform,
+                           const Point3& factor) {
+  BSplineTransform spline{scaled(grid_of(path, transform), factor), {}};
   if (std::ranges::min(spline.grid.dims) < 4) {
     throw IoError(path, transform.type, "has fewer than 4 coefficients along an axis");
   }
@@ -255,7 +265,7 @@ BSplineTransform spline_of(const std::string& path, const ItkTransform& transfor
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t n = 0; n < count; ++n) {
       const double number = transform.parameters[axis * count + n];
-      spline.coefficients[3 * n + axis] = axis < 2 ? 0 - number : number;
+      spline.coefficients[3 * n + axis] = 0 + factor[axis] * number;
     }
   }
   return spline;
@@ -267,22 +277,24 @@ struct SingleLink {
   FieldReader field;
 };
 
-SingleLink single_of(const std::string& path, const ItkTransform& transform) {
+/// @param factor  of positions and displacements
+SingleLink single_of(const std::string& path, const ItkTransform& transform, const Point3& factor) {
   const std::string name = transform.type.substr(0, transform.type.find('_'));
   if (!transform.type.ends_with("_3_3")) refuse(path, transform.type);
   if (is_itk_field(transform.type)) {
     const Grid grid = grid_of(path, transform);
-    const auto field = std::make_shared<const ItkField>(grid, transform);
+    const auto field = std::make_shared<const ItkField>(grid, transform, factor);
     const auto read = [field](const Region& region, float* displacement) {
       field->read(region, displacement);
     };
-    return {DisplacementField{grid, {}}, {.read = read, .chunk_bytes = field->chunk_bytes()}};
+    return {DisplacementField{scaled(grid, factor), {}},
+            {.read = read, .chunk_bytes = field->chunk_bytes()}};
   }
-  if (name == "BSplineTransform") return {spline_of(path, transform), {}};
+  if (name == "BSplineTransform") return {spline_of(path, transform, factor), {}};
   const Kind* const kind = std::find_if(std::begin(kinds), std::end(kinds),
                                         [&](const Kind& known) { return name == known.name; });
   if (kind == std::end(kinds)) refuse(path, transform.type);
-  return {affine_of(path, transform, *kind), {}};
+  return {scaled(affine_of(path, transform, *kind), factor), {}};
 }
 
 /// Appends a transform that follows; two affine ones become one.
@@ -305,7 +317,9 @@ bool is_itk_field(const std::string& type) {
   return type.substr(0, type.find('_')).ends_with("DisplacementFieldTransform");
 }
 
-TransformParts transform_of(const std::string& path, const std::vector<ItkTransform>& transforms) {
+TransformParts transform_of(const std::string& path,
+                            const std::vector<ItkTransform>& transforms,
+                            const Point3& world) {
   if (transforms.empty()) throw IoError(path, "", "holds no transform");
   const bool is_composite = transforms.front().type.starts_with("CompositeTransform");
   if (!is_composite && transforms.size() > 1) {
@@ -315,7 +329,7 @@ TransformParts transform_of(const std::string& path, const std::vector<ItkTransf
   }
   std::vector<SingleLink> links;
   for (std::size_t t = transforms.size(); t > (is_composite ? 1U : 0U); --t) {
-    append(links, single_of(path, transforms[t - 1]));
+    append(links, single_of(path, transforms[t - 1], ratio({-1, -1, 1}, world)));
   }
   if (links.empty()) links.push_back({AffineTransform{}, {}});
   TransformParts parts;

@@ -26,9 +26,12 @@ struct ItkTransform {
 /// Whether a type is that of a displacement field.
 bool is_itk_field(const std::string& type);
 
-/// The transform of a file, turned from LPS to RAS, without a convention. A composite applies its
-/// last transform first.
+/// The transform of a file, turned from LPS and millimeters to a world, without a convention. A
+/// composite applies its last transform first.
+/// @param world     itk_factor() of the world
 /// @throws IoError  when the file holds several without a composite, or one that is not read
-TransformParts transform_of(const std::string& path, const std::vector<ItkTransform>& transforms);
+TransformParts transform_of(const std::string& path,
+                            const std::vector<ItkTransform>& transforms,
+                            const Point3& world);
 
 }  // namespace tetwarp

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tetwarp/io.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <utility>
 #include <variant>
 
@@ -52,23 +53,33 @@ void check_displacement(const std::string& path, const Region& region, const flo
   fail_not_finite(path, place);
 }
 
+/// itk_factor() of the positions that a transform is for.
+Point3 world_of(const TransformReadOptions& options) {
+  const std::string& path = options.world.empty() ? options.image : options.world;
+  if (path.empty()) return {1, 1, 1};
+  return itk_factor(path, read_volume_header(path)).value_or(Point3{1, 1, 1});
+}
+
 TransformParts opened(const std::string& path, const TransformReadOptions& options) {
   if (!has_transform_name(path)) {
     switch (kind_of(path)) {
       case FileKind::nifti:
-        return is_fsl_field(read_nifti_header(path), options) ? open_fsl_field(path, options)
-                                                              : open_nifti_field(path, options);
+        return is_fsl_field(read_nifti_header(path), options)
+                   ? open_fsl_field(path, options)
+                   : open_nifti_field(path, options, world_of(options));
       case FileKind::image:
-        return open_image_field(path, options);
+        return open_image_field(path, options, world_of(options));
       case FileKind::hdf5:
         break;
       default:
-        return open_volume_field(path);
+        return open_volume_field(path, options);
     }
   }
-  TransformParts parts = transform_of(path, has_extension(path, ".mat") ? read_itk_matlab(path)
-                                            : has_transform_name(path)  ? read_itk_text(path)
-                                                                        : read_itk_hdf5(path));
+  TransformParts parts = transform_of(path,
+                                      has_extension(path, ".mat") ? read_itk_matlab(path)
+                                      : has_transform_name(path)  ? read_itk_text(path)
+                                                                  : read_itk_hdf5(path),
+                                      world_of(options));
   parts.file.convention = std::string(what_of(parts.file.transform)) + " of ITK along LPS axes";
   return parts;
 }
@@ -97,6 +108,14 @@ bool is_transform_file(const std::string& path, const TransformReadOptions& opti
   }
 }
 
+std::int64_t transform_step_count(const std::string& path, const TransformReadOptions& options) {
+  if (has_transform_name(path)) return 1;
+  const FileKind kind = kind_of(path);
+  if (kind != FileKind::nifti && kind != FileKind::image && kind != FileKind::volume) return 1;
+  if (kind == FileKind::nifti && is_fsl_field(read_nifti_header(path), options)) return 1;
+  return std::max<std::int64_t>(1, std::ssize(read_volume_header(path).times));
+}
+
 TransformFile read_transform(const std::string& path, const TransformReadOptions& options) {
   TransformParts parts = open_transform(path, options);
   Transform& transform = parts.file.transform;
@@ -114,6 +133,15 @@ TransformFile read_transform(const std::string& path, const TransformReadOptions
 }
 
 TransformParts open_transform(const std::string& path, const TransformReadOptions& options) {
+  const std::int64_t steps = transform_step_count(path, options);
+  if (steps > 1 && !options.step) {
+    throw IoError(path, "",
+                  "holds " + std::to_string(steps) +
+                      " steps of a displacement field; choose one by --steps N");
+  }
+  if (options.step && (*options.step < 0 || *options.step >= steps)) {
+    throw IoError(path, "", "has no step " + std::to_string(*options.step));
+  }
   TransformParts parts = opened(path, options);
   for (FieldReader& field : parts.fields) {
     if (!field.read) continue;  // of a transform that is no field

@@ -1,5 +1,7 @@
 /// @file mesh_reader.cpp
 /// Rest and deformed positions of a mesh file of any format.
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <tetwarp/io.hpp>
 #include <utility>
@@ -61,14 +63,64 @@ bool is_same_topology(const std::vector<MeshPart>& a, std::vector<MeshPart> b) {
   return a == b;
 }
 
+/// Whether steps of a file have points of their own.
+bool moves_points(const MeshFile& file) {
+  const std::vector<MeshPart> first = file.parts_of(0);
+  for (std::size_t step = 1; step < file.file().times.size(); ++step) {
+    if (file.parts_of(static_cast<std::int64_t>(step)) != first) return true;
+  }
+  return false;
+}
+
 /// Files of Gmsh and VTK are recognized by their names, unless they hold something else.
 bool is_imported(const std::string& path) {
   return has_mesh_extension(path) && kind_of(path) == FileKind::unknown;
 }
 
+/// The step of a rest file, 0 where its points do not move.
+std::int64_t rest_file_step(const std::string& path,
+                            bool moves_points,
+                            std::size_t count,
+                            const std::optional<std::int64_t>& step) {
+  if (!moves_points && step.value_or(0) != 0) {
+    throw IoError(path, "", "its points do not move; leave out --rest-step");
+  }
+  if (moves_points && !step) {
+    throw IoError(path, "",
+                  "has points that move in " + std::to_string(count) +
+                      " steps; choose those of the rest by --rest-step N");
+  }
+  if (step && *step >= std::max<std::int64_t>(1, static_cast<std::int64_t>(count))) {
+    throw IoError(path, "", "has no step " + std::to_string(*step) + " of points");
+  }
+  return step.value_or(0);
+}
+
 std::vector<Point3> read_rest_points(const std::string& path, const MeshReadOptions& options) {
-  if (!is_imported(path)) return MeshFile(path).read_points(0);
-  return import_mesh(path, {.axes = options.import.axes}).mesh.rest_positions;
+  if (is_imported(path)) {
+    ImportedMesh mesh = import_mesh(path, {.axes = options.import.axes});
+    const std::int64_t step =
+        rest_file_step(path, mesh.moves_points, mesh.times.size(), options.rest_step);
+    if (mesh.moves_points) {
+      add(mesh.displacements[static_cast<std::size_t>(step)], mesh.mesh.rest_positions);
+    }
+    return std::move(mesh.mesh.rest_positions);
+  }
+  const MeshFile file(path);
+  const std::size_t count = file.file().times.size();
+  return file.read_points(rest_file_step(path, moves_points(file), count, options.rest_step));
+}
+
+/// Whether rest positions of two files are the same but for rounding of float32.
+bool are_same_places(const std::vector<Point3>& a, const std::vector<Point3>& b) {
+  double size = 0, largest = 0;
+  for (std::size_t node = 0; node < a.size(); ++node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      size = std::max(size, std::abs(b[node][axis]));
+      largest = std::max(largest, std::abs(a[node][axis] - b[node][axis]));
+    }
+  }
+  return largest <= 1e-6 * size;
 }
 }  // namespace
 
@@ -80,10 +132,11 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
                   "is a VTKHDF mesh, whose displacement is the array 'displacement'; leave out "
                   "--displacement");
   }
-  input.check_step(options.rest_step);
-  parts = file->parts_of(options.rest_step);
-  MeshCells cells = file->read_cells(options.rest_step);
-  mesh.rest_positions = file->read_points(options.rest_step);
+  const std::int64_t rest = options.rest_file ? 0 : options.rest_step.value_or(0);
+  input.check_step(rest);
+  parts = file->parts_of(rest);
+  MeshCells cells = file->read_cells(rest);
+  mesh.rest_positions = file->read_points(rest);
   tet_firsts = first_tet_copies(mesh.rest_positions, cells.tets, cells.mid_nodes);
   hex_firsts = first_copies(mesh.rest_positions, cells.hexes, SameCells::places);
   header.merged = merged_text(copy_count(tet_firsts) + copy_count(hex_firsts),
@@ -95,9 +148,7 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
   header.times = input.is_temporal() ? input.times : std::vector<double>{0.0};
   header.has_displacement = file->has_displacement();
   header.group_names = file->group_names();
-  for (std::size_t step = 0; step < input.times.size(); ++step) {
-    header.has_moving_points |= file->parts_of(static_cast<std::int64_t>(step)) != parts;
-  }
+  header.has_moving_points = moves_points(*file);
 }
 
 /// Cells of a step without copies, those of ten nodes kept or divided.
@@ -118,10 +169,10 @@ void MeshReader::State::take_cells(MeshCells cells, Mesh& into, std::vector<MidN
 
 void MeshReader::State::import(const MeshReadOptions& options) {
   ImportedMesh whole = import_mesh(path, options.import);
-  if (options.rest_step != 0 &&
-      (!whole.moves_points || options.rest_step >= std::ssize(whole.times))) {
+  const std::int64_t rest = options.rest_file ? 0 : options.rest_step.value_or(0);
+  if (rest != 0 && (!whole.moves_points || rest >= std::ssize(whole.times))) {
     throw IoError(path, "",
-                  "has no step " + std::to_string(options.rest_step) + " of points" +
+                  "has no step " + std::to_string(rest) + " of points" +
                       (whole.moves_points ? "" : ": its points do not move, --rest-step is 0"));
   }
   mesh = std::move(whole.mesh);
@@ -131,7 +182,7 @@ void MeshReader::State::import(const MeshReadOptions& options) {
   header.has_moving_points = whole.moves_points;
   if (whole.moves_points) {
     for (std::vector<Point3>& points : imported.displacements) add(mesh.rest_positions, points);
-    mesh.rest_positions = imported.displacements[static_cast<std::size_t>(options.rest_step)];
+    mesh.rest_positions = imported.displacements[static_cast<std::size_t>(rest)];
   }
   header.merged = whole.merged;
   for (MeshArray& array : whole.arrays) {
@@ -187,6 +238,11 @@ MeshReader::MeshReader(const std::string& path, const MeshReadOptions& options) 
   if (options.rest_file) {
     std::vector<Point3> positions = read_rest_points(*options.rest_file, options);
     check_node_count(*options.rest_file, positions.size(), mesh.rest_positions.size());
+    if (state.header.has_displacement && !are_same_places(positions, mesh.rest_positions)) {
+      throw IoError(path, "",
+                    "has an array of displacements from its points, which are not those of '" +
+                        *options.rest_file + "'; leave out --rest, or the array in the file");
+    }
     mesh.rest_positions = std::move(positions);
   }
   state.header.node_count = static_cast<std::int64_t>(mesh.rest_positions.size());

@@ -25,7 +25,7 @@ VolumeHeader read_volume_header(const std::string& path, const VolumeReadOptions
   const h5::Silence silence;
   VolumeHeader header = is_foreign_image(path) ? read_foreign_volume_header(path, options)
                         : is_nifti(path)       ? read_nifti_volume_header(path, options)
-                        : is_image(path)       ? read_image_volume_header(path)
+                        : is_image(path)       ? read_image_volume_header(path, options.axes)
                                                : read_vtkhdf_header(path);
   for (ArrayHeader& array : header.arrays) {
     if (options.are_labels && !is_integer(array.type)) array.type = PixelType::int32;

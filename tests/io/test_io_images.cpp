@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/io_files.hpp"
@@ -213,6 +215,103 @@ TEST(Images, OfNrrdTellTimeByTheKindOrTheDirection) {
   std::ofstream(folder / "a.nrrd") << begin << "kinds: domain domain domain domain\n" << samples;
   EXPECT_NE(message_of<IoError>([&] { read_volume(folder / "a.nrrd"); }).find("kinds"),
             std::string::npos);
+}
+
+/// As teem reads them: names and words have no case, numbers may have a plus.
+TEST(Images, OfNrrdHaveNamesAndWordsOfAnyCase) {
+  const ScratchFolder folder;
+  const std::string usual =
+      "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 3 1\n"
+      "encoding: raw\nendian: big\nspace origin: (1,2,3)\n"
+      "space directions: (1,0,0) (0,2,0) (0,0,3)\n";
+  const std::string samples = "\nabcdefghijkl";
+  std::ofstream(folder / "usual.nrrd") << usual << samples;
+  const Volume expected = read_volume(folder / "usual.nrrd");
+  EXPECT_EQ(expected.grid.origin, (Point3{-1, -2, 3}));
+  const std::vector<std::pair<std::string, std::string>> changes{
+      {"type: short", "Type: Short"},
+      {"type: short", "type: SIGNED short int"},
+      {"space: left", "Space: left"},
+      {"left-posterior-superior", "Left-Posterior-Superior"},
+      {"left-posterior-superior", "left posterior superior"},
+      {"left-posterior-superior", "lps"},
+      {"encoding: raw", "ENCODING: Raw"},
+      {"endian: big", "Endian: BIG"},
+      {"sizes", "Sizes"},
+      {"space origin: (1,2", "Space Origin: (+1,+2.0e0"},
+      {"space directions: (1", "SPACE DIRECTIONS: (+1"}};
+  for (const auto& [from, to] : changes) {
+    std::string text = usual;
+    text.replace(text.find(from), from.size(), to);
+    std::ofstream(folder / "a.nrrd") << text << samples;
+    EXPECT_EQ(read_volume_header(folder / "a.nrrd").left_out, std::vector<std::string>()) << to;
+    const Volume volume = read_volume(folder / "a.nrrd");
+    EXPECT_EQ(volume.grid, expected.grid) << to;
+    EXPECT_EQ(volume.data, expected.data) << to;
+  }
+  std::ofstream(folder / "a.nrrd") << usual << "Endian: little\n" << samples;
+  EXPECT_NE(message_of<IoError>([&] { read_volume(folder / "a.nrrd"); }).find("is there twice"),
+            std::string::npos);
+}
+
+/// Extents of axes, as ITK places them: samples are in the middle of cells unless they are nodes.
+TEST(Images, OfNrrdLieInTheExtentsOfTheirAxes) {
+  const ScratchFolder folder;
+  struct Case {
+    std::string fields;
+    Point3 origin, spacing;
+  };
+  for (const Case& one : {Case{"spacings: 1 2 3\naxis mins: 5 6 7\n", {5.5, 7, 8.5}, {1, 2, 3}},
+                          Case{"Spacings: +1 2 3\naxismins: 5 6 7\ncenters: cell ??? Cell\n",
+                               {5.5, 7, 8.5},
+                               {1, 2, 3}},
+                          Case{"spacings: 1 2 3\naxis mins: 5 6 7\ncenterings: Node cell NODE\n",
+                               {5, 7, 7},
+                               {1, 2, 3}},
+                          Case{"axis mins: 5 6 7\naxis maxs: 7 12 10\n", {5.5, 7, 8.5}, {1, 2, 3}},
+                          Case{"axis mins: 5 6 7\n", {0, 0, 0}, {1, 1, 1}},
+                          Case{"spacings: 1 2 nan\n", {0, 0, 0}, {1, 2, 1}}}) {
+    std::ofstream(folder / "a.nrrd")
+        << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 1\nencoding: raw\n"
+        << one.fields << "\nabcdef";
+    const VolumeHeader header = read_volume_header(folder / "a.nrrd");
+    EXPECT_EQ(header.grid.origin, one.origin) << one.fields;
+    EXPECT_EQ(header.grid.spacing, one.spacing) << one.fields;
+    EXPECT_TRUE(header.left_out.empty()) << one.fields;
+  }
+}
+
+/// Vectors and symmetric tensors along LPS come back as they were written, turned in between.
+TEST(Images, TurnComponentsAlongLps) {
+  const ScratchFolder folder;
+  const std::vector<std::pair<int, std::vector<int>>> signs{
+      {3, {-1, -1, 1}}, {6, {1, 1, 1, 1, -1, -1}}, {9, {1, 1, -1, 1, 1, -1, -1, -1, 1}}};
+  for (const std::string name : {"a.nrrd", "a.mha", "a.mhd"}) {
+    for (const auto& [components, sign] : signs) {
+      Volume volume = make_volume(Grid{.dims = {2, 2, 1}}, PixelType::float32, components, "v");
+      const std::span<float> samples = volume.samples<float>();
+      for (std::size_t n = 0; n < samples.size(); ++n) samples[n] = static_cast<float>(n + 1);
+      ArrayHeader array{"v", volume.type, components, default_nifti_facts(components)};
+      array.nifti->component_axes = Axes::lps;
+      BlockVolumeWriter writer(folder / name, volume.grid, {array}, {}, false);
+      writer.write(0, {{0, 0, 0}, volume.grid.dims}, volume.data.data());
+      writer.finish();
+
+      const Volume stored = read_volume(folder / name);
+      const Volume turned = read_volume(folder / name, {}, 0, {.axes = Axes::lps});
+
+      EXPECT_EQ(turned.data, volume.data) << name << components;
+      for (std::size_t n = 0; n < samples.size(); ++n) {
+        const int factor = sign[n % sign.size()];
+        EXPECT_EQ(stored.samples<float>()[n], static_cast<float>(factor) * samples[n]) << n;
+      }
+    }
+  }
+  const Volume scalars = make_volume(Grid{.dims = {2, 2, 1}}, PixelType::float32, 1, "v");
+  ArrayHeader array{"v", scalars.type, 1, default_nifti_facts(1)};
+  array.nifti->component_axes = Axes::lps;
+  EXPECT_THROW(BlockVolumeWriter(folder / "b.nrrd", scalars.grid, {array}, {}, false), IoError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.nrrd"));
 }
 
 /// Bytes by hand: big-endian, without a direction.

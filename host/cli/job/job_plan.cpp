@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <tetwarp/itk_space.hpp>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -51,18 +52,19 @@ void check_kinds(const WarpArguments& arguments) {
 
 /// True when --axes lps turns the components of an array, as it does those of meshes.
 bool is_turned(const ArrayHeader& array) {
-  const bool is_tensor = array.components == 6 && array.nifti->intent_code == symmetric_intent;
+  const bool is_tensor =
+      array.components == 6 && (!array.nifti || array.nifti->intent_code == symmetric_intent);
   return !is_integer(array.type) && (array.components == 3 || array.components == 9 || is_tensor);
 }
 
-/// How a volume is read: --axes applies if it is a NIfTI image of vectors or tensors.
+/// How a volume is read: --axes applies if it is an image of vectors or tensors.
 VolumeReadOptions read_options(const std::string& path,
                                const WarpArguments& arguments,
                                const fs::path& output) {
   VolumeReadOptions options;
   options.scratch = output.string();
   options.series = arguments.series;
-  if (arguments.axes == Axes::lps && kind_of(path) == FileKind::nifti &&
+  if (arguments.axes == Axes::lps && has_component_axes(path) &&
       is_turned(read_volume_header(path).arrays.front())) {
     options.axes = Axes::lps;
   }
@@ -81,8 +83,7 @@ void check_axes_turn(const JobPlan& plan, const WarpArguments& arguments) {
   }
   throw std::invalid_argument(
       "--axes lps turns nothing: it is for meshes in .msh, .vtu and .vtk and for vectors and "
-      "tensors "
-      "in NIfTI images; leave it out");
+      "tensors in NIfTI, NRRD and MetaImage files; leave it out");
 }
 
 /// Checks that the volume has the last step that is to be warped.
@@ -186,7 +187,9 @@ VolumePlan plan_volume(const std::string& path,
   plan.warnings = volume_warnings(path, header, mesh.header(), arguments);
   const Warnings more = array_warnings(path, plan.arrays, arguments);
   plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
-  plan.output_grid = resolve_grid(arguments.grid, header.grid, mesh, steps);
+  const std::optional<Point3> world = itk_factor(path, header);
+  if (!world) take_base_facts(arguments.grid, plan.arrays);
+  plan.output_grid = resolve_grid(arguments.grid, header.grid, world, mesh, steps);
   try {
     const Region region = checked_region(plan.output_grid, arguments.warp.region);
     plan.written_grid = grid_of_region(plan.output_grid, region);

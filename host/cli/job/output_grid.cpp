@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tetwarp/itk_space.hpp>
 
 #include "host/base/index_space.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
+#include "host/cli/job/output_files.hpp"
 #include "host/cli/job/step_selection.hpp"
 
 namespace tetwarp::cli {
@@ -89,17 +91,27 @@ Grid with_box_kept(const GridChoice& choice, const Grid& base) {
   return grid;
 }
 
+/// The grid of a volume file in the world of the source.
+Grid base_grid(const GridChoice& choice, const std::optional<Point3>& world) {
+  VolumeReadOptions read;
+  read.series = choice.series;
+  const VolumeHeader base = read_volume_header(choice.base, read);
+  const std::optional<Point3> factor = itk_factor(choice.base, base);
+  return world && factor ? scaled(base.grid, ratio(*factor, *world)) : base.grid;
+}
+
 /// @param bounds  the grid of `--grid bounds`
 template <class Bounds>
-Grid resolve(const GridChoice& choice, const Grid& source, const Bounds& bounds) {
+Grid resolve(const GridChoice& choice,
+             const Grid& source,
+             const std::optional<Point3>& world,
+             const Bounds& bounds) {
   Grid grid = source;
   check_series(choice.series, {choice.base}, "--like-series");
   if (choice.base == "bounds") {
     grid = bounds();
   } else if (choice.base != "same") {
-    VolumeReadOptions read;
-    read.series = choice.series;
-    grid = read_volume_header(choice.base, read).grid;
+    grid = base_grid(choice, world);
   }
   if (choice.dims.has_value() != choice.spacing.has_value()) grid = with_box_kept(choice, grid);
   grid.dims = choice.dims.value_or(grid.dims);
@@ -118,9 +130,10 @@ Grid resolve(const GridChoice& choice, const Grid& source, const Bounds& bounds)
 
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,
+                  const std::optional<Point3>& world,
                   const MeshReader& mesh,
                   const std::vector<std::int64_t>& steps) {
-  return resolve(choice, source, [&] {
+  return resolve(choice, source, world, [&] {
     IndexBox box;
     for (const std::int64_t step : steps) {
       stop_if_interrupted();
@@ -132,13 +145,24 @@ Grid resolve_grid(const GridChoice& choice,
 
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,
+                  const std::optional<Point3>& world,
                   const Mesh& mesh,
                   const std::function<std::vector<Point3>()>& positions) {
-  return resolve(choice, source, [&] {
+  return resolve(choice, source, world, [&] {
     IndexBox box;
     box.include(index_from_world(source), mesh, positions());
     return grid_of(source, box);
   });
+}
+
+void take_base_facts(const GridChoice& choice, std::vector<ArrayHeader>& arrays) {
+  if (choice.base == "same" || choice.base == "bounds") return;
+  VolumeReadOptions read;
+  read.series = choice.series;
+  const std::optional<NiftiFacts> base = first_facts(read_volume_header(choice.base, read));
+  for (ArrayHeader& array : arrays) {
+    if (!array.nifti) array.nifti = facts_of_extra(base, array.components);
+  }
 }
 
 Region parse_region(const std::string& text) {

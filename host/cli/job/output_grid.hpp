@@ -28,8 +28,11 @@ struct GridChoice {
 /// spacing do not fill the box, they protrude equally on both sides. A given origin or direction
 /// keeps the origin where it is when the size of the voxels changes.
 /// Throws std::invalid_argument when the result is no valid grid.
+/// @param world  itk_factor() of the source's positions, to which the grid of a volume file is
+///               turned; nothing: that file's positions are taken for positions of the source
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,
+                  const std::optional<Point3>& world,
                   const MeshReader& mesh,
                   const std::vector<std::int64_t>& steps);
 
@@ -37,8 +40,13 @@ Grid resolve_grid(const GridChoice& choice,
 /// @param positions  returns them; called if the choice depends on them
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,
+                  const std::optional<Point3>& world,
                   const Mesh& mesh,
                   const std::function<std::vector<Point3>()>& positions);
+
+/// Gives arrays without NiftiFacts codes and units of the volume file whose grid is chosen: for a
+/// source whose positions have no unit.
+void take_base_facts(const GridChoice& choice, std::vector<ArrayHeader>& arrays);
 
 /// Reads "i0:i1,j0:j1,k0:k1". Throws std::invalid_argument.
 Region parse_region(const std::string& text);

@@ -192,15 +192,17 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
   app.add_flag("--pair", arguments.pair, "warp step n of the volume by step n of the mesh");
   add_parsed(
       app, "--steps", arguments.steps, [](const std::string& text) { return StepSelection(text); },
-      "LIST", "steps of the mesh: numbers and half-open slices, e.g. 0:10:2 or -1 [all]");
+      "LIST",
+      "steps of the mesh: numbers and half-open slices, e.g. 0:10:2 or -1 [all]; of a displacement "
+      "field the one");
   app.add_option("--displacement", arguments.mesh.import.displacement,
                  "of a mesh in .msh, .vtu or .vtk: point array (Gmsh: node data) that deforms it "
                  "[displacement]")
       ->type_name("NAME");
   add_axes(
       app, arguments.axes,
-      "axes of meshes in .msh, .vtu and .vtk and of vectors and tensors in NIfTI images; lps is "
-      "turned to ras [ras; of a displacement field what its intent tells]");
+      "axes of meshes in .msh, .vtu and .vtk and of vectors and tensors in NIfTI, NRRD and "
+      "MetaImage files; lps is turned to ras [ras; of a displacement field what its intent tells]");
   app.add_option_function<std::string>(
          "--fsl",
          [&arguments](const std::string& word) {
@@ -212,8 +214,10 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
   add_ten_nodes(app, arguments.mesh.import.keeps_curved);
   app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
-  app.add_option("--rest-step", arguments.mesh.rest_step,
-                 "step that holds the rest positions of moving points [0]")
+  app.add_option(
+         "--rest-step", arguments.mesh.rest_step,
+         "step that holds the rest positions of moving points, also of --rest FILE [0; of FILE "
+         "none]")
       ->check(at_least(0))
       ->type_name("N");
 }

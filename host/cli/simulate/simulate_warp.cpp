@@ -63,7 +63,7 @@ WarpOptions BodyWarps::options_of(const Follower& follower) const {
 
 void BodyWarps::prepare(Follower& follower) const {
   const Mesh& mesh = simulator_.body(follower.body).mesh;
-  const Grid grid = resolve_grid(arguments_.grid, follower.source->grid, mesh,
+  const Grid grid = resolve_grid(arguments_.grid, follower.source->grid, {}, mesh,
                                  [&] { return simulator_.node_positions(follower.body); });
   if (follower.warper && grid == follower.grid) return;
   if (arguments_.extra.contains(forward_output) && grid != follower.source->grid) {

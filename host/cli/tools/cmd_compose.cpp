@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <vector>
 
 #include "host/cli/common/axes_option.hpp"
@@ -18,6 +19,7 @@
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/common/ten_nodes_option.hpp"
+#include "host/cli/job/output_files.hpp"
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/step_selection.hpp"
 #include "host/cli/tools/transform_chain.hpp"
@@ -40,12 +42,12 @@ struct ComposeArguments {
 std::vector<ChainLink> read_links(const ComposeArguments& arguments) {
   std::vector<ChainLink> links;
   for (const std::string& word : arguments.words) {
-    links.emplace_back(word, arguments.mesh, arguments.axes);
+    links.emplace_back(word, arguments.mesh, arguments.axes, arguments.like);
   }
   return links;
 }
 
-/// Those of the meshes with several steps, which must have equally many.
+/// Those of the meshes and fields with several steps, which must have equally many.
 std::vector<std::int64_t> steps_of(const ComposeArguments& arguments,
                                    const std::vector<ChainLink>& links) {
   std::int64_t count = 1;
@@ -53,17 +55,16 @@ std::vector<std::int64_t> steps_of(const ComposeArguments& arguments,
     if (link.step_count() == 1) continue;
     if (count > 1 && link.step_count() != count) {
       throw IoError(link.path(), "",
-                    fmt::format("has {} steps, another mesh has {}", link.step_count(), count));
+                    fmt::format("has {} steps, another file has {}", link.step_count(), count));
     }
     count = link.step_count();
   }
   return arguments.steps.of(count);
 }
 
-/// The displacements of a step, slice by slice of the grid.
+/// The displacements of the chosen step, slice by slice of the grid.
 Volume composed(const ComposeArguments& arguments,
                 const std::vector<ChainLink>& links,
-                std::int64_t step,
                 const Grid& grid,
                 ChainNotes& notes) {
   Volume field = make_volume(grid, PixelType::float32, 3, "tetwarp_displacement");
@@ -82,7 +83,7 @@ Volume composed(const ComposeArguments& arguments,
     }
     std::vector<Point3> points = voxels;
     for (auto link = links.rbegin(); link != links.rend(); ++link) {
-      link->apply(step, arguments.threads, points, notes);
+      link->apply(arguments.threads, points, notes);
       stop_if_interrupted();
     }
     for (std::size_t v = 0; v < voxels.size(); ++v) {
@@ -110,8 +111,8 @@ void print_chain_notes(const std::string& output, const Grid& grid, const ChainN
   }
   if (notes.not_inverted > 0) {
     fmt::print(stderr,
-               "tetwarp: {}: {} of {} positions have no inverse of the field: it folds or "
-               "leaves its grid there\n",
+               "tetwarp: {}: {} of {} positions have no inverse: the field takes nothing there; "
+               "they kept their place\n",
                output, notes.not_inverted, grid.voxel_count());
   }
 }
@@ -122,8 +123,9 @@ int run_compose(const ComposeArguments& arguments) {
   check_series(arguments.like_series, {arguments.like}, "--like-series");
   VolumeReadOptions read;
   read.series = arguments.like_series;
-  const Grid grid = read_volume_header(arguments.like, read).grid;
-  const std::vector<ChainLink> links = read_links(arguments);
+  const VolumeHeader like = read_volume_header(arguments.like, read);
+  const Grid& grid = like.grid;
+  std::vector<ChainLink> links = read_links(arguments);
   const std::vector<std::int64_t> steps = steps_of(arguments, links);
   std::vector<std::string> inputs{arguments.like};
   for (const ChainLink& link : links) inputs.push_back(link.path());
@@ -135,10 +137,14 @@ int run_compose(const ComposeArguments& arguments) {
     check_output_file(names.back(), inputs);
   }
   const InterruptFlag flag;
-  const ArrayHeader array{.name = "tetwarp_displacement", .components = 3, .is_itk_field = true};
+  const ArrayHeader array{.name = "tetwarp_displacement",
+                          .components = 3,
+                          .nifti = facts_of_extra(first_facts(like), 3),
+                          .is_itk_field = true};
   for (std::size_t s = 0; s < steps.size(); ++s) {
     ChainNotes notes;
-    const Volume field = composed(arguments, links, steps[s], grid, notes);
+    for (ChainLink& link : links) link.choose(steps[s]);
+    const Volume field = composed(arguments, links, grid, notes);
     OutputWriter writer(names[s], grid, {array}, {.compress = arguments.compress}, false, 1,
                         ChunkShape::rows);
     writer.write(0, {{0, 0, 0}, grid.dims}, field.data.data());
@@ -191,7 +197,7 @@ void add_compose_command(CLI::App& app, Run& run) {
               throw CLI::ValidationError("--steps", error.what());
             }
           },
-          "steps of the meshes: numbers and half-open slices, e.g. 0:10:2 or -1 [all]")
+          "steps of the meshes and fields: numbers and half-open slices, e.g. 0:10:2 or -1 [all]")
       ->type_name("LIST");
   add_ten_nodes(*command, arguments->mesh.import.keeps_curved);
   add_axes(*command, arguments->axes,

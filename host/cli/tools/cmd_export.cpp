@@ -46,6 +46,11 @@ int run_export(const ExportArguments& arguments) {
         "the name of an image to export ends in .nii, .nii.gz, .nrrd, .mha, .mhd, .mgh, .mgz or "
         ".vti");
   }
+  if (arguments.axes && has_vtk_image_name(arguments.output)) {
+    throw IoError(arguments.output, "",
+                  "holds components along the axes of the volume; leave out --axes, or write .nii, "
+                  ".nrrd or .mha");
+  }
   check_output_file(arguments.output, {arguments.input});
   check_series(arguments.series, {arguments.input});
   VolumeReadOptions read;

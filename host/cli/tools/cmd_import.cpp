@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tetwarp/io.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <tetwarp/mesh_import.hpp>
 
 #include "host/cli/common/axes_option.hpp"
@@ -41,10 +42,11 @@ void run_volume_import(const ImportArguments& arguments) {
     check_kind(arguments.input, FileKind::nifti,
                "usage: tetwarp import FILE -o VOLUME, with a NIfTI, NRRD, MetaImage or .vti file, "
                "a folder of DICOM images, or a mesh named .msh, .vtu or .vtk");
-  } else if (arguments.axes) {
-    throw IoError(
-        arguments.input, "",
-        "keeps its components as they are; leave out --axes, which is for NIfTI and meshes");
+  }
+  if (arguments.axes && !has_component_axes(arguments.input)) {
+    throw IoError(arguments.input, "",
+                  "keeps its components as they are; leave out --axes, which is for NIfTI, NRRD, "
+                  "MetaImage and meshes");
   }
   if (arguments.mesh.displacement) {
     throw IoError(arguments.input, "", "is not a mesh; leave out --displacement");

@@ -8,8 +8,10 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <tetwarp/io.hpp>
+#include <type_traits>
 #include <vector>
 
 #include "host/base/pixel_dispatch.hpp"
@@ -36,28 +38,44 @@ Json times_json(const std::vector<double>& times) {
   return json;
 }
 
-/// Adds the smallest and the largest finite sample, null when there is none; of floating-point
-/// samples also the numbers of NaN and of infinities.
-void add_range(Json& json, const Volume& volume) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  double low = infinity, high = -infinity;
+/// Of all steps of an array: the smallest and the largest finite sample, as integers where samples
+/// are, and how many are none.
+template <class T>
+struct SampleRange {
+  std::optional<T> low, high;
   std::int64_t nans = 0, infinities = 0;
-  with_pixel_type(volume.type, [&]<class T>(T) {
-    for (const T stored : volume.samples<T>()) {
-      const auto sample = static_cast<double>(stored);
-      if (std::isfinite(sample)) {
-        low = std::min(low, sample);
-        high = std::max(high, sample);
-      } else {
+
+  void include(T sample) {
+    if constexpr (std::is_floating_point_v<T>) {
+      if (!std::isfinite(sample)) {
         ++(std::isnan(sample) ? nans : infinities);
+        return;
       }
     }
+    low = std::min(low.value_or(sample), sample);
+    high = std::max(high.value_or(sample), sample);
+  }
+};
+
+/// Adds the range of an array, null when no sample is finite; of floating-point samples also the
+/// numbers of NaN and of infinities.
+void add_range(Json& json,
+               const std::string& path,
+               const ArrayHeader& array,
+               std::int64_t steps,
+               const VolumeReadOptions& read) {
+  with_pixel_type(array.type, [&]<class T>(T) {
+    SampleRange<T> range;
+    for (std::int64_t step = 0; step < steps; ++step) {
+      const Volume volume = read_volume(path, array.name, step, read);
+      for (const T sample : volume.samples<T>()) range.include(sample);
+    }
+    json["min"] = range.low ? Json(*range.low) : Json();
+    json["max"] = range.high ? Json(*range.high) : Json();
+    if (is_integer(array.type)) return;
+    json["nan"] = range.nans;
+    json["infinite"] = range.infinities;
   });
-  json["min"] = low;  // JSON has no infinity: null
-  json["max"] = high;
-  if (is_integer(volume.type)) return;
-  json["nan"] = nans;
-  json["infinite"] = infinities;
 }
 
 Json volume_json(const InfoArguments& arguments) {
@@ -78,15 +96,16 @@ Json volume_json(const InfoArguments& arguments) {
             {"spacing", header.grid.spacing},
             {"direction", header.grid.direction}};
   json.update(times_json(header.times));
+  const auto steps = std::max<std::int64_t>(1, std::ssize(header.times));
   if (has_one_array) {
     const ArrayHeader& array = header.arrays.front();
     json["type"] = name_of(array.type);
     json["components"] = array.components;
-    if (arguments.stats) add_range(json, read_volume(arguments.file, {}, 0, read));
+    if (arguments.stats) add_range(json, arguments.file, array, steps, read);
   }
   for (const ArrayHeader& array : has_one_array ? std::vector<ArrayHeader>() : header.arrays) {
     Json entry{{"type", name_of(array.type)}, {"components", array.components}};
-    if (arguments.stats) add_range(entry, read_volume(arguments.file, array.name));
+    if (arguments.stats) add_range(entry, arguments.file, array, steps, read);
     json["arrays"][array.name] = entry;
   }
   if (header.arrays.size() > 1) json["active"] = header.active;
@@ -219,7 +238,8 @@ void add_info_command(CLI::App& app, Run& run) {
   command->add_option("FILE", arguments->file, "volume, mesh or contact problem")
       ->required()
       ->type_name("");
-  command->add_flag("--stats", arguments->stats, "read the samples and show their range");
+  command->add_flag("--stats", arguments->stats,
+                    "read the samples of all steps and show their range");
   command->add_flag("--json", arguments->json, "print JSON");
   add_series(*command, arguments->series);
   add_quiet(*command, arguments->quiet);

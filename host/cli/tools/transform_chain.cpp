@@ -7,47 +7,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/base/point3.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/interrupt.hpp"
+#include "host/cli/tools/field_inverse.hpp"
 #include "host/cli/tools/mapped_points.hpp"
 
 namespace tetwarp::cli {
 namespace {
 constexpr std::string_view inverse_mark = "^-1";
-
-/// The grid of a field or a spline.
-const Grid& grid_of(const Transform& transform) {
-  const auto* const field = std::get_if<DisplacementField>(&transform);
-  return field != nullptr ? field->grid : std::get<BSplineTransform>(transform).grid;
-}
-
-/// x with x + u(x) = y, by x <- y - u(x), for a field or a spline.
-void invert_field(const Transform& field, std::vector<Point3>& points, ChainNotes& notes) {
-  constexpr int most_steps = 100;
-  const std::vector<Point3> target = points;
-  double step = 0.1;  // of the largest spacing: a residual beyond it is no inverse
-  const Grid& grid = grid_of(field);
-  const double bound = step * *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  std::vector<double> residual(points.size());
-  for (int n = 0; n < most_steps; ++n) {
-    const std::vector<Point3> there = transformed(field, points);
-    double largest = 0;
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      const Point3 missing = minus(target[p], there[p]);
-      residual[p] = norm(missing);
-      largest = std::max(largest, residual[p]);
-      points[p] = plus(points[p], missing);
-    }
-    if (largest < 1e-6 * bound) break;
-  }
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    if (residual[p] <= bound) {
-      notes.largest_residual = std::max(notes.largest_residual, residual[p]);
-    } else {
-      ++notes.not_inverted;
-    }
-  }
-}
 
 /// The links of a chain, or the only transform.
 std::vector<Transform> links_of_file(Transform transform) {
@@ -90,23 +57,15 @@ AffineTransform inverse_of(const AffineTransform& affine) {
 
 ChainLink::ChainLink(const std::string& word,
                      const MeshReadOptions& mesh,
-                     const std::optional<Axes>& axes)
-    : path_(word), is_inverse_(word.ends_with(inverse_mark)) {
+                     const std::optional<Axes>& axes,
+                     const std::string& world)
+    : path_(word),
+      is_inverse_(word.ends_with(inverse_mark)),
+      options_{.axes = axes, .world = world, .step = 0} {
   if (is_inverse_) path_.resize(path_.size() - inverse_mark.size());
-  if (kind_of(path_) != FileKind::mesh && is_transform_file(path_, {.axes = axes})) {
-    Transform transform = read_transform(path_, {.axes = axes}).transform;
-    transforms_ = links_of_file(std::move(transform));
-    if (!is_inverse_) return;
-    std::reverse(transforms_.begin(), transforms_.end());
-    for (Transform& single : transforms_) {
-      auto* const affine = std::get_if<AffineTransform>(&single);
-      if (affine == nullptr) continue;
-      try {
-        *affine = inverse_of(*affine);
-      } catch (const std::invalid_argument& error) {
-        throw IoError(path_, "", error.what());
-      }
-    }
+  if (kind_of(path_) != FileKind::mesh && is_transform_file(path_, options_)) {
+    field_steps_ = transform_step_count(path_, options_);
+    if (field_steps_ == 1) read_transforms();
     return;
   }
   check_mesh(path_, "expected a mesh, a displacement field or a transform of ITK");
@@ -115,8 +74,30 @@ ChainLink::ChainLink(const std::string& word,
   mesh_.emplace(path_, options);
 }
 
+/// Those of the chosen step.
+void ChainLink::read_transforms() {
+  transforms_ = links_of_file(read_transform(path_, options_).transform);
+  if (!is_inverse_) return;
+  std::reverse(transforms_.begin(), transforms_.end());
+  for (Transform& single : transforms_) {
+    auto* const affine = std::get_if<AffineTransform>(&single);
+    if (affine == nullptr) continue;
+    try {
+      *affine = inverse_of(*affine);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(path_, "", error.what());
+    }
+  }
+}
+
 std::int64_t ChainLink::step_count() const {
-  return mesh_ ? std::ssize(mesh_->header().times) : 1;
+  return mesh_ ? std::ssize(mesh_->header().times) : field_steps_;
+}
+
+void ChainLink::choose(std::int64_t step) {
+  if (step_count() == 1) return;
+  options_.step = step;
+  if (!mesh_) read_transforms();
 }
 
 bool ChainLink::iterates() const {
@@ -125,13 +106,10 @@ bool ChainLink::iterates() const {
          });
 }
 
-void ChainLink::apply(std::int64_t step,
-                      int threads,
-                      std::vector<Point3>& points,
-                      ChainNotes& notes) const {
+void ChainLink::apply(int threads, std::vector<Point3>& points, ChainNotes& notes) const {
   if (mesh_) {
     MappedPoints mapped =
-        mapped_by(*mesh_, step_count() == 1 ? 0 : step, std::move(points),
+        mapped_by(*mesh_, *options_.step, std::move(points),
                   {.inverse = !is_inverse_, .threads = threads});  // as a warp samples its source
     notes.outside += mapped.outside;
     notes.straightened += mapped.straightened;
@@ -140,7 +118,9 @@ void ChainLink::apply(std::int64_t step,
   }
   for (const Transform& single : transforms_) {
     if (is_inverse_ && !std::holds_alternative<AffineTransform>(single)) {
-      invert_field(single, points, notes);
+      const InverseCounts counts = invert_field(single, points, stop_if_interrupted);
+      notes.not_inverted += counts.not_found;
+      notes.largest_residual = std::max(notes.largest_residual, counts.largest_residual);
     } else {
       points = transformed(single, std::move(points));
     }

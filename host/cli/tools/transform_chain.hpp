@@ -17,26 +17,35 @@ namespace tetwarp::cli {
 struct ChainNotes {
   std::int64_t outside = 0;       ///< of a mesh: they kept their place there
   std::int64_t straightened = 0;  ///< of a mesh: moved by straight tetrahedra, see CurvedMesh
-  std::int64_t not_inverted = 0;  ///< of a field: no position was found that it takes there
+  std::int64_t not_inverted = 0;  ///< of a field: no position is taken there; kept their place
   double largest_residual = 0;    ///< of those found [world]
 };
 
 /// One transform from positions of the output to positions in the source.
 class ChainLink {
  public:
-  /// @param word  path of the file; with "^-1" behind it the inverse
-  ChainLink(const std::string& word, const MeshReadOptions& mesh, const std::optional<Axes>& axes);
+  /// @param word   path of the file; with "^-1" behind it the inverse
+  /// @param world  file of a volume in whose world the points are; see TransformReadOptions
+  ChainLink(const std::string& word,
+            const MeshReadOptions& mesh,
+            const std::optional<Axes>& axes,
+            const std::string& world);
 
   const std::string& path() const { return path_; }
-  std::int64_t step_count() const;  ///< 1 but for meshes
-  bool iterates() const;            ///< it is the inverse of a field or a spline, by fixed point
+  std::int64_t step_count() const;  ///< 1 but for meshes and fields
+  bool iterates() const;  ///< it is the inverse of a field or a spline, see invert_field()
 
-  /// @param step  of a mesh; one with a single step takes that
-  void apply(std::int64_t step, int threads, std::vector<Point3>& points, ChainNotes& notes) const;
+  /// Chooses the step that is applied; a file with a single step keeps that.
+  void choose(std::int64_t step);
+  void apply(int threads, std::vector<Point3>& points, ChainNotes& notes) const;
 
  private:
+  void read_transforms();
+
   std::string path_;
   bool is_inverse_;
+  TransformReadOptions options_;  ///< with the chosen step, also of a mesh
+  std::int64_t field_steps_ = 1;
   std::optional<MeshReader> mesh_;
   std::vector<Transform> transforms_;  ///< in the order of application, no chains; of an inverse
                                        ///< affine ones are inverted

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <tetwarp/resample.hpp>
 #include <tetwarp/transform_file.hpp>
 #include <tetwarp/version.hpp>
@@ -35,7 +36,10 @@ const std::string order = "the order is: tetwarp warp IMAGE FIELD -o OUT";
 
 /// Throws std::invalid_argument for options that have no meaning without a mesh.
 void check_options(const WarpArguments& arguments) {
+  const bool has_steps =
+      transform_step_count(arguments.files.back(), arguments.transform_options()) > 1;
   for (const auto& [name, values] : arguments.given) {
+    if (name == "steps" && has_steps) continue;
     const std::string refusal = transform_refusal(name, values, arguments.provenance);
     if (!refusal.empty()) throw std::invalid_argument(refusal);
   }
@@ -69,6 +73,8 @@ TransformSource open_source(const WarpArguments& arguments) {
   source.header = read_volume_header(path, source.read);
   source.arrays = choose_arrays(source.header, arguments, path);
   check_arrays(path, source.header.grid, source.arrays, arguments);
+  source.world = itk_factor(path, source.header);
+  if (!source.world) take_base_facts(arguments.grid, source.arrays);
   const auto count = std::max<std::int64_t>(1, std::ssize(source.header.times));
   if (arguments.source_step && *arguments.source_step >= count) {
     throw IoError(path, "",
@@ -172,7 +178,7 @@ JobResult run_transform_job(const WarpArguments& arguments, const JobContext& co
   const Stopwatch watch;
   const TransformSource source = checked_source(arguments);
   ResampleOptions options = resample_options(arguments);
-  options.output_grid = resolve_grid(arguments.grid, source.header.grid, Mesh{}, {});
+  options.output_grid = resolve_grid(arguments.grid, source.header.grid, source.world, Mesh{}, {});
   const std::vector<std::string> files = files_of_output(arguments.output, source.arrays);
   std::vector<std::string> inputs = arguments.files;
   if (arguments.grid.base != "same") inputs.push_back(arguments.grid.base);

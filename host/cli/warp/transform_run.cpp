@@ -34,6 +34,31 @@ std::vector<DisplacementField*> fields_of(Transform& transform) {
   return fields;
 }
 
+/// How the transform is read: for the world of the source and, of a field with several steps, the
+/// one that --steps chooses.
+TransformReadOptions read_options(const WarpArguments& arguments, const TransformSource& source) {
+  TransformReadOptions options = arguments.transform_options();
+  const std::string &path = arguments.files.back(), &grid = arguments.grid.base;
+  if (!source.world && grid != "same") options.world = grid;
+  const bool says_steps = std::ranges::any_of(
+      arguments.given, [](const auto& option) { return option.first == "steps"; });
+  if (!says_steps) return options;
+  std::vector<std::int64_t> steps;
+  try {
+    steps = arguments.steps.of(transform_step_count(path, options));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, "", error.what());
+  }
+  if (steps.size() > 1) {
+    throw IoError(path, "",
+                  fmt::format("--steps chooses {} steps of the field; a warp is by one, such as "
+                              "--steps {}",
+                              steps.size(), steps.front()));
+  }
+  options.step = steps.front();
+  return options;
+}
+
 /// Bytes of a voxel of the largest array.
 double largest_voxel(const std::vector<ArrayHeader>& arrays) {
   double most = 0;
@@ -47,7 +72,7 @@ TransformRun::TransformRun(const WarpArguments& arguments,
                            const ResampleOptions& options)
     : arguments_(arguments),
       source_(source),
-      parts_(open_transform(arguments.files.back(), arguments.transform_options())),
+      parts_(open_transform(arguments.files.back(), read_options(arguments, source))),
       options_(options) {
   const bool says_outside = std::ranges::any_of(
       arguments.given, [](const auto& option) { return option.first == "outside"; });

@@ -26,6 +26,7 @@ struct TransformSource {
   VolumeReadOptions read;
   VolumeHeader header;
   std::vector<ArrayHeader> arrays;
+  std::optional<Point3> world;  ///< itk_factor() of its positions
   std::vector<std::int64_t> steps;
   bool is_series = false;
 };
