@@ -6,7 +6,8 @@ A linear vector field and a linear tensor field on an oblique, a mirrored and a 
 imported, warped by a rotation about three axes and exported. SimpleITK and nibabel write the input
 and read the output; what they must find there is computed here. Displacement fields of images of all
 48 orientations (of every EVERYth of them) and three units of length, without a form and of one slice
-are applied by SimpleITK. Exits 77 when SimpleITK, nibabel or h5py is missing, 1 when a value or a
+are applied by SimpleITK, in NIfTI and MetaImage files, of volumes that take unit and form of another
+image, and composed. Exits 77 when SimpleITK, nibabel or h5py is missing, 1 when a value or a
 field of a header differs.
 """
 import itertools
@@ -189,6 +190,14 @@ def field_cases(every):
         yield np.diag([-1.5, 2.0, 2.5]), np.array([1.0, 2, 3]), unit, (9, 8), True
 
 
+def remove_facts(path):
+    """Leaves a volume whose positions have no unit."""
+    with h5py.File(path, "r+") as file:
+        for array in file["VTKHDF/PointData"].values():
+            for name in [name for name in array.attrs if name.startswith("tetwarp_nifti_")]:
+                del array.attrs[name]
+
+
 def check_fields(files, every):
     """ITK applies displacement fields in millimeters, along the axes in which it places the image:
     LPS, but where the header has no form, the header's own."""
@@ -214,7 +223,13 @@ def check_fields(files, every):
             files("warp", "head.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--outputs",
                   "displacement", "--quiet")
             files("export", "out.vtkhdf", "--array", "tetwarp_displacement", "-o", "exported.nii")
-            names.append("exported.nii")
+            files("warp", "head.nii", "mesh.vtkhdf", "-o", "out.mha", "--outputs", "displacement")
+            remove_facts(files.path("head.vtkhdf"))
+            files("warp", "head.vtkhdf", "mesh.vtkhdf", "-o", "bare.nii", "--outputs",
+                  "displacement", "--like", "head.nii")
+            files("compose", "mesh.vtkhdf", "-o", "composed.nii", "--like", "head.nii")
+            names += ["exported.nii", "out_displacement.mha", "bare_displacement.nii",
+                      "composed.nii"]
         for name in names:
             read = sitk.ReadImage(files.path(name), sitk.sitkVectorFloat64)
             axes = read.GetDimension()
