@@ -41,10 +41,9 @@ struct TransformReadOptions {
   std::string image = {};  ///< file of the image to warp, to whose voxels fields of FSL lead
   /// As of VolumeReadOptions, for fields of which regions are read.
   std::string scratch = {};
-  /// File of an image. Transforms of ITK are turned from the places where ITK has its voxels, in
-  /// millimeters, to its world: the unit and the forms of its NIfTI header. Empty: `image`; without
-  /// either the world is RAS in millimeters.
-  std::string world = {};
+  /// itk_factor() of the positions to transform: those of ITK's transforms are turned to them.
+  /// Nothing: that of `image`; without either they are RAS in millimeters.
+  std::optional<Point3> world = {};
   /// Of a displacement field with several steps; without it such a file is an error.
   std::optional<std::int64_t> step = {};
 };

@@ -55,9 +55,9 @@ void check_displacement(const std::string& path, const Region& region, const flo
 
 /// itk_factor() of the positions that a transform is for.
 Point3 world_of(const TransformReadOptions& options) {
-  const std::string& path = options.world.empty() ? options.image : options.world;
-  if (path.empty()) return {1, 1, 1};
-  return itk_factor(path, read_volume_header(path)).value_or(Point3{1, 1, 1});
+  if (options.world) return *options.world;
+  if (options.image.empty()) return {1, 1, 1};
+  return itk_factor(options.image, read_volume_header(options.image)).value_or(Point3{1, 1, 1});
 }
 
 TransformParts opened(const std::string& path, const TransformReadOptions& options) {

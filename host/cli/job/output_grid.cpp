@@ -91,11 +91,20 @@ Grid with_box_kept(const GridChoice& choice, const Grid& base) {
   return grid;
 }
 
-/// The grid of a volume file in the world of the source.
-Grid base_grid(const GridChoice& choice, const std::optional<Point3>& world) {
+/// The header of the volume file whose grid is chosen.
+VolumeHeader base_header(const GridChoice& choice) {
   VolumeReadOptions read;
   read.series = choice.series;
-  const VolumeHeader base = read_volume_header(choice.base, read);
+  return read_volume_header(choice.base, read);
+}
+
+bool names_file(const GridChoice& choice) {
+  return choice.base != "same" && choice.base != "bounds";
+}
+
+/// Its grid in the world of the source.
+Grid base_grid(const GridChoice& choice, const std::optional<Point3>& world) {
+  const VolumeHeader base = base_header(choice);
   const std::optional<Point3> factor = itk_factor(choice.base, base);
   return world && factor ? scaled(base.grid, ratio(*factor, *world)) : base.grid;
 }
@@ -110,7 +119,7 @@ Grid resolve(const GridChoice& choice,
   check_series(choice.series, {choice.base}, "--like-series");
   if (choice.base == "bounds") {
     grid = bounds();
-  } else if (choice.base != "same") {
+  } else if (names_file(choice)) {
     grid = base_grid(choice, world);
   }
   if (choice.dims.has_value() != choice.spacing.has_value()) grid = with_box_kept(choice, grid);
@@ -155,11 +164,14 @@ Grid resolve_grid(const GridChoice& choice,
   });
 }
 
+std::optional<Point3> base_factor(const GridChoice& choice) {
+  if (!names_file(choice)) return std::nullopt;
+  return itk_factor(choice.base, base_header(choice));
+}
+
 void take_base_facts(const GridChoice& choice, std::vector<ArrayHeader>& arrays) {
-  if (choice.base == "same" || choice.base == "bounds") return;
-  VolumeReadOptions read;
-  read.series = choice.series;
-  const std::optional<NiftiFacts> base = first_facts(read_volume_header(choice.base, read));
+  if (!names_file(choice)) return;
+  const std::optional<NiftiFacts> base = first_facts(base_header(choice));
   for (ArrayHeader& array : arrays) {
     if (!array.nifti) array.nifti = facts_of_extra(base, array.components);
   }

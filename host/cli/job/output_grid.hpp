@@ -44,6 +44,9 @@ Grid resolve_grid(const GridChoice& choice,
                   const Mesh& mesh,
                   const std::function<std::vector<Point3>()>& positions);
 
+/// itk_factor() of the volume file whose grid is chosen; nothing: none is, or it has none.
+std::optional<Point3> base_factor(const GridChoice& choice);
+
 /// Gives arrays without NiftiFacts codes and units of the volume file whose grid is chosen: for a
 /// source whose positions have no unit.
 void take_base_facts(const GridChoice& choice, std::vector<ArrayHeader>& arrays);

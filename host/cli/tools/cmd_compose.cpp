@@ -39,10 +39,11 @@ struct ComposeArguments {
   bool quiet = false;
 };
 
-std::vector<ChainLink> read_links(const ComposeArguments& arguments) {
+std::vector<ChainLink> read_links(const ComposeArguments& arguments,
+                                  const std::optional<Point3>& world) {
   std::vector<ChainLink> links;
   for (const std::string& word : arguments.words) {
-    links.emplace_back(word, arguments.mesh, arguments.axes, arguments.like);
+    links.emplace_back(word, arguments.mesh, arguments.axes, world);
   }
   return links;
 }
@@ -125,7 +126,7 @@ int run_compose(const ComposeArguments& arguments) {
   read.series = arguments.like_series;
   const VolumeHeader like = read_volume_header(arguments.like, read);
   const Grid& grid = like.grid;
-  std::vector<ChainLink> links = read_links(arguments);
+  std::vector<ChainLink> links = read_links(arguments, itk_factor(arguments.like, like));
   const std::vector<std::int64_t> steps = steps_of(arguments, links);
   std::vector<std::string> inputs{arguments.like};
   for (const ChainLink& link : links) inputs.push_back(link.path());

@@ -58,7 +58,7 @@ AffineTransform inverse_of(const AffineTransform& affine) {
 ChainLink::ChainLink(const std::string& word,
                      const MeshReadOptions& mesh,
                      const std::optional<Axes>& axes,
-                     const std::string& world)
+                     const std::optional<Point3>& world)
     : path_(word),
       is_inverse_(word.ends_with(inverse_mark)),
       options_{.axes = axes, .world = world, .step = 0} {

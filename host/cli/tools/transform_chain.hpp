@@ -25,11 +25,11 @@ struct ChainNotes {
 class ChainLink {
  public:
   /// @param word   path of the file; with "^-1" behind it the inverse
-  /// @param world  file of a volume in whose world the points are; see TransformReadOptions
+  /// @param world  of the points; see TransformReadOptions
   ChainLink(const std::string& word,
             const MeshReadOptions& mesh,
             const std::optional<Axes>& axes,
-            const std::string& world);
+            const std::optional<Point3>& world);
 
   const std::string& path() const { return path_; }
   std::int64_t step_count() const;  ///< 1 but for meshes and fields

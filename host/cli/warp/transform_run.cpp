@@ -15,6 +15,7 @@
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/job/disk_plan.hpp"
 #include "host/cli/job/memory_plan.hpp"
+#include "host/cli/job/output_grid.hpp"
 #include "host/cli/job/source_scan.hpp"
 #include "host/cli/warp/samples.hpp"
 #include "io/files/memory.hpp"
@@ -38,8 +39,8 @@ std::vector<DisplacementField*> fields_of(Transform& transform) {
 /// one that --steps chooses.
 TransformReadOptions read_options(const WarpArguments& arguments, const TransformSource& source) {
   TransformReadOptions options = arguments.transform_options();
-  const std::string &path = arguments.files.back(), &grid = arguments.grid.base;
-  if (!source.world && grid != "same") options.world = grid;
+  const std::string& path = arguments.files.back();
+  options.world = source.world ? source.world : base_factor(arguments.grid);
   const bool says_steps = std::ranges::any_of(
       arguments.given, [](const auto& option) { return option.first == "steps"; });
   if (!says_steps) return options;
