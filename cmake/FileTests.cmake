@@ -122,6 +122,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_bad_layouts.cpp
   tests/cli/test_cli_batch.cpp
+  tests/cli/test_cli_batch_order.cpp
   tests/cli/test_cli_field_batch.cpp
   tests/cli/test_cli_certify.cpp
   tests/cli/test_cli_contact.cpp
@@ -148,7 +149,8 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_render.cpp
   tests/cli/test_cli_simulate_surfaces.cpp
   tests/cli/test_cli_simulate_volumes.cpp
-  tests/cli/test_cli_field_memory.cpp)
+  tests/cli/test_cli_field_memory.cpp
+  tests/cli/test_cli_refusals.cpp)
 target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)
 if(TETWARP_LONG_TESTS)

@@ -93,6 +93,11 @@ Grid with_box_kept(const GridChoice& choice, const Grid& base) {
 template <class Bounds>
 Grid resolve(const GridChoice& choice, const Grid& source, const Bounds& bounds) {
   Grid grid = source;
+  if (!choice.series.empty() && (choice.base == "same" || choice.base == "bounds")) {
+    throw std::invalid_argument(
+        "--like-series is of the folder of DICOM images that --like names; add --like FOLDER, or "
+        "leave it out");
+  }
   check_series(choice.series, {choice.base}, "--like-series");
   if (choice.base == "bounds") {
     grid = bounds();

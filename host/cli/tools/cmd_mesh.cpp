@@ -127,9 +127,15 @@ void check_options(const MeshArguments& arguments) {
   const char* const refused = !is_of_surface                ? nullptr
                               : arguments.lattice.threshold ? "--threshold"
                               : arguments.lattice.hexahedra ? "--hexahedra"
+                              : !arguments.array.empty()    ? "--array"
+                              : !arguments.series.empty()   ? "--series"
+                              : arguments.step              ? "--step"
                                                             : nullptr;
   if (refused != nullptr) {
     throw CLI::ValidationError(refused, "is not for --from-surface; leave it out");
+  }
+  if (!arguments.array.empty() && !arguments.lattice.threshold) {
+    throw CLI::ValidationError("--array", "names what --threshold is compared with; add it");
   }
   if (!arguments.surface.empty() && arguments.lattice.hexahedra) {
     throw CLI::ValidationError("--surface", "binds to tetrahedra; leave out --hexahedra");

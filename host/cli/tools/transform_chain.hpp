@@ -27,9 +27,15 @@ class ChainLink {
   /// @param word  path of the file; with "^-1" behind it the inverse
   ChainLink(const std::string& word, const MeshReadOptions& mesh, const std::optional<Axes>& axes);
 
+  /// The path in a word of the constructor.
+  static std::string path_of(const std::string& word) {
+    return word.substr(0, word.size() - (word.ends_with("^-1") ? 3 : 0));
+  }
+
   const std::string& path() const { return path_; }
-  std::int64_t step_count() const;  ///< 1 but for meshes
-  bool iterates() const;            ///< it is the inverse of a field or a spline, by fixed point
+  const std::optional<MeshReader>& mesh() const { return mesh_; }  ///< of other links none
+  std::int64_t step_count() const;                                 ///< 1 but for meshes
+  bool iterates() const;  ///< it is the inverse of a field or a spline, by fixed point
 
   /// @param step  of a mesh; one with a single step takes that
   void apply(std::int64_t step, int threads, std::vector<Point3>& points, ChainNotes& notes) const;

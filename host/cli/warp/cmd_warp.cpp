@@ -34,10 +34,7 @@ int run_warp(WarpArguments arguments) {
   if (devices > 1) arguments.warp.device = launched_local_rank() % devices;
   const JobResult result =
       run_warp_job(arguments, {.shows_progress = !arguments.quiet, .ranks = &ranks});
-  if (!arguments.quiet && ranks.is_root()) {
-    fmt::print(stderr, "{}", storing_note(result.report));
-    fmt::print("{}", summary(result));
-  }
+  if (!arguments.quiet && ranks.is_root()) fmt::print("{}", summary(result));
   if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
   ranks.finish();
   return 0;
@@ -63,6 +60,7 @@ void add_warp_command(CLI::App& app, Run& run) {
   command->callback([arguments, command, &run] {
     arguments->given = given_options(*command);
     check_complete(*arguments);
+    check_device(*command, arguments->warp.backend);
     if (!arguments->batch.empty() && launched_count() > 1) {
       throw CLI::ValidationError("--batch", "runs without mpirun; start one mpirun for each job");
     }
