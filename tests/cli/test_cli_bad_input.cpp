@@ -178,7 +178,7 @@ TEST(BadInput, RefusesAFolderWithoutPermission) {
 TEST(BadInput, ListsWhatExistsWhenSomethingDoesNot) {
   const Scene scene;
   for (const Refused& refused :
-       std::vector<Refused>{{warp_with({"--steps", "4"}), "the mesh has 4 (0 to 3)"},
+       std::vector<Refused>{{warp_with({"--steps", "4"}), "there are 4 (0 to 3)"},
                             {warp_with({"--steps", "2:2"}), "selects none of its 4 steps"},
                             {warp_with({"--source-step", "1"}), "the volume has 1 (0 to 0)"},
                             {warp_with({"--array", "pressure"}), "density"},

@@ -230,6 +230,8 @@ TEST_F(CliRefusals, OfOptionsWithoutAnEffectNameThem) {
         {joined(by_mesh, {"out.vti", "--compress", "3"}), "--compress"},
         {joined(by_mesh, {"out.nii", "--backend", "cpu", "--device", "1"}), "--device"},
         {joined(by_mesh, {"out.nii", "--like-series", "1.2"}), "--like-series"},
+        {joined(by_mesh, {"out.nii", "--count-folded"}), "--count-folded"},
+        {{"mesh", "volume.vtkhdf", "-o", "out.vtkhdf", "--step", "0"}, "--step"},
         {{"mesh", "volume.vtkhdf", "-o", "out.vtkhdf", "--array", "density"}, "--array"}}) {
     const Names before = scene.names();
     const CommandResult result = run(words);

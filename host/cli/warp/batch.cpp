@@ -298,14 +298,14 @@ class SideBySide {
     const std::string name = name_of_job(number_of(job.index));
     Json report = report_head(jobs_[job.index], number_of(job.index));
     const ProcessEnd& end = job.process->end();
-    for (const std::string& line : end.notes) fmt::print(stderr, "tetwarp: {}: {}\n", name, line);
-    for (const std::string& line : end.printed) fmt::print("{}: {}\n", name, line);
     states_[job.index] = end.exit_code == 0 ? JobState::ended : JobState::failed;
     if (end.exit_code == interrupted_exit_code) {
       report["status"] = "interrupted";
       outcome_.reports.push_back(report);
       return;
     }
+    for (const std::string& line : end.notes) fmt::print(stderr, "tetwarp: {}: {}\n", name, line);
+    for (const std::string& line : end.printed) fmt::print("{}: {}\n", name, line);
     if (end.exit_code != 0) {
       fail(outcome_, name, report,
            end.problem.empty() ? fmt::format("ended with code {}", end.exit_code) : end.problem);

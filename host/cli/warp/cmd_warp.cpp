@@ -29,6 +29,9 @@ int run_warp(WarpArguments arguments) {
     if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
     return 0;
   }
+  if (arguments.warp.count_folded && arguments.report.empty()) {
+    throw std::invalid_argument("--count-folded needs --report, which it adds to; add it");
+  }
   Ranks ranks = Ranks::start();
   const int devices = ranks.count() > 1 ? device_count() : 0;
   if (devices > 1) arguments.warp.device = launched_local_rank() % devices;
