@@ -231,6 +231,11 @@ TEST_F(CliRefusals, OfOptionsWithoutAnEffectNameThem) {
         {joined(by_mesh, {"out.nii", "--backend", "cpu", "--device", "1"}), "--device"},
         {joined(by_mesh, {"out.nii", "--like-series", "1.2"}), "--like-series"},
         {joined(by_mesh, {"out.nii", "--count-folded"}), "--count-folded"},
+        {{"simulate", "--scene", "torso", "-o", "out", "--filter", "cubic"}, "--filter"},
+        {{"simulate", "--scene", "torso", "-o", "out", "--spacing", "1,1,1"}, "--spacing"},
+        {{"simulate", "--scene", "torso", "-o", "out", "--picture", "--cast", "--compress", "3"},
+         "--compress"},
+        {{"view", "torso", "--backend", "cpu", "--device", "1"}, "--device"},
         {{"mesh", "volume.vtkhdf", "-o", "out.vtkhdf", "--step", "0"}, "--step"},
         {{"mesh", "volume.vtkhdf", "-o", "out.vtkhdf", "--array", "density"}, "--array"}}) {
     const Names before = scene.names();
