@@ -97,7 +97,7 @@ class BatchOrder : public testing::Test {
 /// earlier jobs write, and what later jobs overwrite.
 TEST_F(BatchOrder, WritesWhatOneAfterTheOtherWrites) {
   std::mt19937 random(7);
-  for (int batch = 0; batch < 5; ++batch) {
+  for (int batch = 0; batch < 3; ++batch) {
     constexpr std::size_t count = 6;
     std::vector<Row> rows;
     for (std::size_t j = 0; j < count; ++j) {

@@ -55,10 +55,11 @@ TEST_F(CliRefusals, OfWhatAFormatCannotHoldComeBeforeAnythingIsWritten) {
                                 {"doubles.vtkhdf", "one.vtkhdf"},
                                 {"doubles.vtkhdf", "shift.tfm"},
                                 {"vectors.vtkhdf", "one.vtkhdf"},
-                                {"dotted.vti", "one.vtkhdf"},
-                                {"dotted.vti", "shift.tfm"}}) {
+                                {"dotted.vti", "one.vtkhdf"}}) {
+      const bool is_dotted = inputs[0] == "dotted.vti";
+      if (is_dotted && extension != ".vtkhdf") continue;  // reading it takes a program of its own
       for (const Names& options : {Names{}, {"--outputs", "displacement"}, {"--temporal"}}) {
-        if (inputs[1] == "shift.tfm" && !options.empty()) continue;
+        if ((is_dotted || inputs[1] == "shift.tfm") && !options.empty()) continue;
         const Names words =
             joined(joined({"warp"}, inputs), joined(options, {"-o", "out/warped" + extension}));
         const Names before = scene.names();
@@ -79,8 +80,8 @@ TEST_F(CliRefusals, OfWhatAFormatCannotHoldComeBeforeAnythingIsWritten) {
       }
     }
   }
-  EXPECT_GE(refused, 15);
-  EXPECT_GE(taken, 30);
+  EXPECT_EQ(refused, 12);  // .mgz 8, .vti 3, the name with a dot
+  EXPECT_EQ(taken, 44);
 }
 
 /// Of several volumes no earlier one is written.
@@ -236,8 +237,9 @@ TEST_F(CliRefusals, OfOptionsWithoutAnEffectNameThem) {
         {{"simulate", "--scene", "torso", "-o", "out", "--picture", "--cast", "--compress", "3"},
          "--compress"},
         {{"view", "torso", "--backend", "cpu", "--device", "1"}, "--device"},
-        {{"mesh", "volume.vtkhdf", "-o", "out.vtkhdf", "--step", "0"}, "--step"},
-        {{"mesh", "volume.vtkhdf", "-o", "out.vtkhdf", "--array", "density"}, "--array"}}) {
+        {{"mesh", "--from-surface", "one.vtkhdf", "-o", "out.vtkhdf", "--step", "0"}, "--step"},
+        {{"mesh", "--from-surface", "one.vtkhdf", "-o", "out.vtkhdf", "--array", "u"},
+         "--array"}}) {
     const Names before = scene.names();
     const CommandResult result = run(words);
 

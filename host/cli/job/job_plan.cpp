@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -223,11 +224,12 @@ std::string output_name_of(const std::string& volume) {
   std::string name = path.filename().string();
   std::error_code error;
   if (fs::is_directory(volume, error)) return name + ".nii.gz";
-  for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz", ".dcm"}) {
-    if (has_extension(name, end)) return name.substr(0, name.size() - end.size()) + ".nii.gz";
+  constexpr std::pair<std::string_view, std::string_view> written[] = {
+      {".hdr", ".nii.gz"}, {".hdr.gz", ".nii.gz"}, {".img", ".nii.gz"}, {".img.gz", ".nii.gz"},
+      {".dcm", ".nii.gz"}, {".nhdr", ".nrrd"},     {".mgh.gz", ".mgz"}};
+  for (const auto& [end, own] : written) {
+    if (has_extension(name, end)) return name.substr(0, name.size() - end.size()).append(own);
   }
-  if (has_extension(name, ".nhdr")) return split_name(name).stem + ".nrrd";
-  if (has_extension(name, ".mgh.gz")) return name.substr(0, name.size() - 7) + ".mgz";
   if (!has_one_of(name, volume_endings)) {
     throw IoError(volume, "",
                   "its name ends like that of no format, and its output would have the same name; "

@@ -134,11 +134,6 @@ void check_options(const MeshArguments& arguments) {
   if (refused != nullptr) {
     throw CLI::ValidationError(refused, "is not for --from-surface; leave it out");
   }
-  if ((!arguments.array.empty() || arguments.step) && !arguments.lattice.threshold &&
-      !is_of_surface) {
-    throw CLI::ValidationError(arguments.step ? "--step" : "--array",
-                               "is of samples that are compared with --threshold; add it");
-  }
   if (!arguments.surface.empty() && arguments.lattice.hexahedra) {
     throw CLI::ValidationError("--surface", "binds to tetrahedra; leave out --hexahedra");
   }
