@@ -62,7 +62,7 @@ bool may_write(const JobFiles& job, const std::string& file) {
   return job.writes.contains(file) || (!job.is_planned && file.starts_with(job.stem));
 }
 
-/// A file that `readers` names and a job may write; null: none.
+/// One of these files that a job may write; null: none.
 const std::string* written_of(const std::set<std::string>& files, const JobFiles& job) {
   const auto found =
       std::ranges::find_if(files, [&](const std::string& file) { return may_write(job, file); });
