@@ -10,7 +10,7 @@ tetwarp_sources(tetwarp_command host/cli/common
 tetwarp_sources(tetwarp_command host/cli/contact
   cmd_contact.cpp contact_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/job
-  array_checks.cpp disk_plan.cpp fingerprint.cpp job_plan.cpp label_rule_option.cpp memory_plan.cpp
+  array_checks.cpp disk_plan.cpp fingerprint.cpp job_plan.cpp job_result.cpp label_rule_option.cpp memory_plan.cpp
   output_files.cpp output_grid.cpp output_writer.cpp provenance.cpp source_scan.cpp step_selection.cpp warnings.cpp
   warp_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/simulate
@@ -24,7 +24,7 @@ tetwarp_sources(tetwarp_command host/cli/tools
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
-  batch.cpp batch_file.cpp batch_list.cpp block_warper.cpp cmd_warp.cpp job_process.cpp
+  batch.cpp batch_file.cpp batch_list.cpp batch_order.cpp block_warper.cpp cmd_warp.cpp job_process.cpp
   job_share.cpp part_exchange.cpp
   part_queue.cpp report_exchange.cpp series_in_parts.cpp step_writer.cpp transform_job.cpp
   transform_run.cpp volume_blocks.cpp volume_run.cpp volume_sources.cpp volume_steps.cpp volume_task.cpp warp_job.cpp)

@@ -124,6 +124,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_bad_layouts.cpp
   tests/cli/test_cli_batch.cpp
+  tests/cli/test_cli_batch_order.cpp
   tests/cli/test_cli_field_batch.cpp
   tests/cli/test_cli_certify.cpp
   tests/cli/test_cli_contact.cpp
@@ -151,6 +152,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_simulate_surfaces.cpp
   tests/cli/test_cli_simulate_volumes.cpp
   tests/cli/test_cli_field_memory.cpp
+  tests/cli/test_cli_refusals.cpp
   tests/cli/test_cli_steps.cpp
   host/cli/tools/field_inverse.cpp
   tests/cli/test_field_inverse.cpp)

@@ -39,10 +39,54 @@ std::optional<ImageFormat> format_of(const std::string& path) {
   return std::nullopt;
 }
 
-/// The file of samples of a pair.
+/// The file of samples of a pair; of others the file itself.
 std::string samples_of(const std::string& path, bool is_packed) {
+  if (format_of(path) != ImageFormat::meta_pair) return path;
   const std::string stem = path.substr(0, path.size() - std::string(".mhd").size());
-  return stem + (is_packed ? ".zraw" : ".raw");
+  const std::string samples = stem + (is_packed ? ".zraw" : ".raw");
+  std::error_code error;
+  if (std::filesystem::exists(samples, error) && !std::filesystem::exists(path, error)) {
+    throw IoError(path, "",
+                  "its samples would replace '" + samples + "'; name another file, or remove it");
+  }
+  return samples;
+}
+
+/// @throws IoError  what the format does not hold
+std::string header_text_of(const std::string& path, ImageHeader header) {
+  const ImageFormat format = *format_of(path);
+  header.steps = std::max<std::int64_t>(1, std::ssize(header.times));
+  try {
+    return format == ImageFormat::nrrd  ? nrrd_header_text(header)
+           : format == ImageFormat::mgh ? mgh_header_text(header)
+                                        : meta_header_text(header);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, "", error.what());
+  }
+}
+
+/// All but the times of the steps.
+ImageHeader header_of(const std::string& path,
+                      const Grid& grid,
+                      const ArrayHeader& array,
+                      int level) {
+  ImageHeader header;
+  // ITK and 3D Slicer take the positions of these formats as millimeters.
+  const bool is_of_itk = format_of(path) != ImageFormat::mgh && array.nifti;
+  header.grid = is_of_itk ? scaled(grid, itk_factor(*array.nifti)) : grid;
+  header.type = array.type;
+  header.components = array.components;
+  header.is_packed = level > 0;
+  const std::string samples = samples_of(path, header.is_packed);
+  if (samples != path) header.data_file = std::filesystem::path(samples).filename().string();
+  static_cast<void>(header_text_of(path, header));
+  return header;
+}
+
+/// Of deflate: .mgz is packed, .mgh is not.
+int level_of(const std::string& path, const VolumeWriteOptions& options) {
+  if (format_of(path) != ImageFormat::mgh) return options.compress;
+  return has_extension(path, ".mgz") ? std::max(options.compress, 1) : 0;
 }
 
 /// Factors of an array's components, as the file holds them: displacement fields along LPS axes in
@@ -73,28 +117,9 @@ class ImageSink : public VolumeSink {
         format_(*format_of(path)),
         factors_(factors_of(path, array)),
         is_temporal_(is_temporal),
-        level_(options.compress) {
-    // ITK and 3D Slicer take the positions of these formats as millimeters.
-    const bool is_of_itk = format_ != ImageFormat::mgh && array.nifti;
-    header_.grid = is_of_itk ? scaled(grid, itk_factor(*array.nifti)) : grid;
-    header_.type = array.type;
-    header_.components = array.components;
-    // .mgz is packed, .mgh is not.
-    if (format_ == ImageFormat::mgh) level_ = has_extension(path, ".mgz") ? std::max(level_, 1) : 0;
-    header_.is_packed = level_ > 0;
-    std::string samples = path;
-    if (format_ == ImageFormat::meta_pair) {
-      samples = samples_of(path, header_.is_packed);
-      std::error_code error;
-      if (std::filesystem::exists(samples, error) && !std::filesystem::exists(path, error)) {
-        throw IoError(
-            path, "",
-            "its samples would replace '" + samples + "'; name another file, or remove it");
-      }
-      header_.data_file = std::filesystem::path(samples).filename().string();
-    }
-    static_cast<void>(header_text());  // so that what the format does not hold is refused now
-    file_.emplace(samples);
+        level_(level_of(path, options)),
+        header_(header_of(path, grid, array, level_)) {
+    file_.emplace(samples_of(path, header_.is_packed));
     descriptor_ = open(file_->temporary().c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) fail();
     if (header_.is_packed || is_temporal) {
@@ -174,17 +199,7 @@ class ImageSink : public VolumeSink {
     return step_bytes() * (is_temporal_ ? std::ssize(header_.times) : 1);
   }
 
-  std::string header_text() const {
-    ImageHeader header = header_;
-    header.steps = std::max<std::int64_t>(1, std::ssize(header.times));
-    try {
-      return format_ == ImageFormat::nrrd  ? nrrd_header_text(header)
-             : format_ == ImageFormat::mgh ? mgh_header_text(header)
-                                           : meta_header_text(header);
-    } catch (const std::invalid_argument& error) {
-      throw IoError(path_, "", error.what());
-    }
-  }
+  std::string header_text() const { return header_text_of(path_, header_); }
 
   /// Writes the header where it is the beginning of the file.
   void write_header() {
@@ -286,6 +301,15 @@ class ImageSink : public VolumeSink {
 
 bool has_image_name(const std::string& path) {
   return format_of(path).has_value();
+}
+
+void check_image(const std::string& path,
+                 const Grid& grid,
+                 const std::vector<ArrayHeader>& arrays,
+                 const VolumeWriteOptions& options) {
+  const ArrayHeader& array = only_array(path, "an image of this format", grid, arrays);
+  static_cast<void>(factors_of(path, array));
+  static_cast<void>(header_of(path, grid, array, level_of(path, options)));
 }
 
 std::unique_ptr<VolumeSink> make_image_sink(const std::string& path,

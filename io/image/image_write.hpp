@@ -11,6 +11,12 @@
 
 namespace tetwarp {
 
+/// Throws what make_image_sink() throws about its arguments, and writes nothing.
+void check_image(const std::string& path,
+                 const Grid& grid,
+                 const std::vector<ArrayHeader>& arrays,
+                 const VolumeWriteOptions& options);
+
 /// A file of one array without steps, packed where options.compress is above 0.
 /// @throws IoError  on several arrays, and when the file cannot be created
 std::unique_ptr<VolumeSink> make_image_sink(const std::string& path,

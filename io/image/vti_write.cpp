@@ -162,11 +162,10 @@ bool has_vtk_image_name(const std::string& path) {
   return has_extension(path, ".vti");
 }
 
-std::unique_ptr<VolumeSink> make_vti_sink(const std::string& path,
-                                          const Grid& grid,
-                                          const std::vector<ArrayHeader>& arrays,
-                                          const VolumeWriteOptions& options,
-                                          bool is_temporal) {
+void check_vti(const std::string& path,
+               const Grid& grid,
+               const std::vector<ArrayHeader>& arrays,
+               bool is_temporal) {
   if (is_temporal) {
     throw IoError(path, "",
                   "a .vti file holds one step; write .vtkhdf or .nii.gz, or steps in files of "
@@ -178,6 +177,14 @@ std::unique_ptr<VolumeSink> make_vti_sink(const std::string& path,
   } catch (const std::invalid_argument& error) {
     throw IoError(path, "", error.what());
   }
+}
+
+std::unique_ptr<VolumeSink> make_vti_sink(const std::string& path,
+                                          const Grid& grid,
+                                          const std::vector<ArrayHeader>& arrays,
+                                          const VolumeWriteOptions& options,
+                                          bool is_temporal) {
+  check_vti(path, grid, arrays, is_temporal);
   return std::make_unique<VtiSink>(path, grid, arrays, options);
 }
 

@@ -12,6 +12,12 @@
 
 namespace tetwarp {
 
+/// Throws what make_vti_sink() throws about its arguments, and writes nothing.
+void check_vti(const std::string& path,
+               const Grid& grid,
+               const std::vector<ArrayHeader>& arrays,
+               bool is_temporal);
+
 /// A file of one step, with all arrays.
 /// @throws IoError  the file would be temporal, has no array or no valid grid, or cannot be written
 std::unique_ptr<VolumeSink> make_vti_sink(const std::string& path,

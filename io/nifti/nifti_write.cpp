@@ -43,6 +43,21 @@ NiftiFacts facts_of(const std::string& path, const ArrayHeader& array) {
   return facts;
 }
 
+ComponentMap map_of(const std::string& path,
+                    const Grid& grid,
+                    const ArrayHeader& array,
+                    const NiftiFacts& facts) {
+  if (!array.is_itk_field) {
+    return component_map(path, array.type, array.components, facts.intent_code,
+                         facts.component_axes);
+  }
+  NiftiFields fields;
+  set_grid(fields, grid, facts);
+  return itk_field_map(path, array.type, array.components, grid,
+                       fields.sform_code > 0 || fields.qform_code > 0,
+                       nifti_length_unit(facts.xyzt_units));
+}
+
 /// A file of one step that is written whole goes to its place at once. Blocks and series go to a
 /// temporary file first, because a gzip file can only be written from its beginning, and a series
 /// has all steps of a component before the next component.
@@ -59,7 +74,7 @@ class NiftiSink : public VolumeSink {
         facts_(facts_of(path, array)),
         options_(options),
         is_temporal_(is_temporal),
-        map_(make_map()),
+        map_(map_of(path, grid, array, facts_)),
         file_(path) {}
 
   void begin_step(double time) override {
@@ -111,18 +126,6 @@ class NiftiSink : public VolumeSink {
   }
 
  private:
-  ComponentMap make_map() const {
-    if (!array_.is_itk_field) {
-      return component_map(path_, array_.type, array_.components, facts_.intent_code,
-                           facts_.component_axes);
-    }
-    NiftiFields fields;
-    set_grid(fields, grid_, facts_);
-    return itk_field_map(path_, array_.type, array_.components, grid_,
-                         fields.sform_code > 0 || fields.qform_code > 0,
-                         nifti_length_unit(facts_.xyzt_units));
-  }
-
   std::size_t components() const { return static_cast<std::size_t>(map_.count); }
   std::int64_t step_count() const { return is_temporal_ ? std::ssize(rows_) : 1; }
   std::int64_t plane_bytes() const {
@@ -236,6 +239,13 @@ class NiftiSink : public VolumeSink {
 
 bool has_nifti_name(const std::string& path) {
   return has_extension(path, ".nii") || has_extension(path, ".nii.gz");
+}
+
+void check_nifti(const std::string& path,
+                 const Grid& grid,
+                 const std::vector<ArrayHeader>& arrays) {
+  const ArrayHeader& array = only_array(path, "a NIfTI image", grid, arrays);
+  static_cast<void>(map_of(path, grid, array, facts_of(path, array)));
 }
 
 std::unique_ptr<VolumeSink> make_nifti_sink(const std::string& path,

@@ -11,6 +11,9 @@
 
 namespace tetwarp {
 
+/// Throws what make_nifti_sink() throws about its arguments, and writes nothing.
+void check_nifti(const std::string& path, const Grid& grid, const std::vector<ArrayHeader>& arrays);
+
 /// A NIfTI file of one array.
 std::unique_ptr<VolumeSink> make_nifti_sink(const std::string& path,
                                             const Grid& grid,

@@ -38,6 +38,13 @@ std::string checked(const std::string& path,
 }
 }  // namespace
 
+void check_image_file(const std::string& path,
+                      const Grid& grid,
+                      const std::vector<ArrayHeader>& arrays,
+                      const VolumeWriteOptions& options) {
+  static_cast<void>(checked(path, grid, arrays, options));
+}
+
 void check_compression(const std::string& path, const VolumeWriteOptions& options) {
   if (options.compress >= 0 && options.compress <= 9) return;
   throw IoError(path, "",

@@ -17,6 +17,12 @@ namespace tetwarp {
 /// Throws IoError unless the compression level is 0 to 9.
 void check_compression(const std::string& path, const VolumeWriteOptions& options);
 
+/// Throws what ImageFile throws about names, grid and compression, and writes nothing.
+void check_image_file(const std::string& path,
+                      const Grid& grid,
+                      const std::vector<ArrayHeader>& arrays,
+                      const VolumeWriteOptions& options);
+
 /// Writes the samples of its arrays region by region.
 class ImageFile : public VolumeSink {
  public:

@@ -178,8 +178,8 @@ TEST(BadInput, RefusesAFolderWithoutPermission) {
 TEST(BadInput, ListsWhatExistsWhenSomethingDoesNot) {
   const Scene scene;
   for (const Refused& refused :
-       std::vector<Refused>{{warp_with({"--steps", "4"}), "the mesh has 4 (0 to 3)"},
-                            {warp_with({"--steps", "2:2"}), "selects none of the mesh's 4 steps"},
+       std::vector<Refused>{{warp_with({"--steps", "4"}), "there are 4 (0 to 3)"},
+                            {warp_with({"--steps", "2:2"}), "selects none of its 4 steps"},
                             {warp_with({"--source-step", "1"}), "the volume has 1 (0 to 0)"},
                             {warp_with({"--array", "pressure"}), "density"},
                             {warp_with({"--rest-step", "99"}), "99"}}) {

@@ -161,5 +161,57 @@ TEST_F(CliWarnings, NameTheJobOfABatch) {
   EXPECT_NE(result.err.find("tetwarp: job 2: mesh.vtkhdf: "), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(scene / "b.h5"));
 }
+
+/// A transform names what a mesh that does the same names, and refuses it with --strict.
+TEST_F(CliWarnings, AreThoseOfAMeshForTransforms) {
+  write_mesh(scene / "still.vtkhdf", box_mesh(), shifts({0}));
+  write_text(scene / "still.tfm",
+             "#Insight Transform File V1.0\n#Transform 0\nTransform: "
+             "TranslationTransform_double_3_3\nParameters: 0 0 0\nFixedParameters: \n");
+  const Volume floats = ramp_volume<float>(), mask = ramp_volume<std::int16_t>("tetwarp_mask");
+  write_volumes(scene / "warped.vtkhdf", {&floats, &mask});
+  write_nifti(scene / "whole.nii", ramp_volume<std::int16_t>());
+  TemporalVolumeWriter writer(scene / "uneven.vtkhdf");
+  for (const double time : {0., 1., 5., 6.}) writer.append(time, {&floats});
+  writer.finish();
+  struct Case {
+    std::string volume;
+    Names options;
+    bool is_warning;
+  };
+  for (const auto& [volume, options, is_warning] :
+       {Case{"uneven.vtkhdf", {"-o", "out.nii"}, true},
+        {"uneven.vtkhdf", {"-o", "out.mgz"}, true},
+        {"uneven.vtkhdf", {"-o", "out.mha"}, true},
+        {"uneven.vtkhdf", {"-o", "out.vtkhdf"}, false},
+        {"whole.nii", {"-o", "out.nii", "--background", "1e9"}, true},
+        {"whole.nii", {"-o", "out.nii", "--background", "9"}, false},
+        {"volume.vtkhdf", {"-o", "out.nii", "--filter", "labels"}, false},
+        {"warped.vtkhdf", {"-o", "out.vtkhdf"}, false}}) {
+    const auto run = [&](const std::string& deformation, const Names& more) {
+      Names words{"warp", volume, deformation};
+      words.insert(words.end(), options.begin(), options.end());
+      words.insert(words.end(), more.begin(), more.end());
+      return run_command(scene, words);
+    };
+    const Names before = scene.names();
+    const CommandResult refused = run("still.tfm", {"--strict"});
+    EXPECT_EQ(refused.exit_code, is_warning ? 1 : 0) << refused.err;
+    EXPECT_EQ(refused.err, run("still.vtkhdf", {"--strict"}).err);
+    EXPECT_EQ(scene.names() == before, is_warning);
+
+    const CommandResult result = run("still.tfm", {"--report", "report.json"});
+    const CommandResult by_mesh = run("still.vtkhdf", {"--report", "mesh.json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, by_mesh.err);
+    EXPECT_EQ(warnings_of("report.json"), warnings_of("mesh.json"));
+    EXPECT_EQ(warnings_of("report.json").size(), is_warning ? 1u : 0u);
+    EXPECT_EQ(nlohmann::json::parse(text_of(scene / "report.json"))["notes"],
+              nlohmann::json::parse(text_of(scene / "mesh.json"))["notes"]);
+    for (const char* extension : {"nii", "mgz", "mha", "vtkhdf"}) {
+      fs::remove(scene / (std::string("out.") + extension));
+    }
+  }
+}
 }  // namespace
 }  // namespace tetwarp::test

@@ -74,8 +74,8 @@ void check_pair(const SurfaceReader& start, const SurfaceReader& end) {
                     "; write both states with the same points and triangles");
 }
 
-/// The number of steps of all files that have several.
-std::int64_t common_step_count(const std::vector<SurfaceReader>& surfaces) {
+/// The first of the files that have several steps, all equally many.
+const SurfaceReader& with_steps(const std::vector<SurfaceReader>& surfaces) {
   const SurfaceReader* first = nullptr;
   for (const SurfaceReader& surface : surfaces) {
     if (surface.step_count() == 1) continue;
@@ -89,7 +89,7 @@ std::int64_t common_step_count(const std::vector<SurfaceReader>& surfaces) {
     throw IoError(surfaces.front().path(), "",
                   "holds one state, as do all files; give those of the end by --to");
   }
-  return first->step_count();
+  return *first;
 }
 
 /// Files of one state are at rest in all steps.
@@ -194,8 +194,8 @@ void certify_two_states(const CertifyArguments& arguments, Certification& certif
 
 void certify_steps(const CertifyArguments& arguments, Certification& certification) {
   const std::vector<SurfaceReader> surfaces = opened(arguments.starts);
-  const std::int64_t step_count = common_step_count(surfaces);
-  const std::vector<std::int64_t> steps = arguments.steps.of(step_count);
+  const SurfaceReader& moving = with_steps(surfaces);
+  const std::vector<std::int64_t> steps = arguments.steps.of(moving.step_count(), moving.path());
   if (steps.size() < 2) {
     throw std::invalid_argument("--steps: expected two steps at least, a start and an end");
   }

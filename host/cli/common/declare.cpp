@@ -70,6 +70,13 @@ CLI::App* add_subcommand(CLI::App& app,
   return command;
 }
 
+void check_device(const CLI::App& app, Backend backend) {
+  if (app.get_option("--device")->count() == 0) return;
+  if (backend == Backend::automatic || backend == Backend::cuda) return;
+  throw CLI::ValidationError(
+      "--device", std::string("is of cuda, --backend is ") + name_of(backend) + "; leave out one");
+}
+
 std::string one_line(const std::string& text) {
   std::string line;
   for (std::size_t i = 0; i < text.size();) {

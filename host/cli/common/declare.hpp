@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <tetwarp/backend.hpp>
 #include <tetwarp/names.hpp>
 #include <utility>
 #include <vector>
@@ -48,6 +49,9 @@ CLI::Validator above_zero();
 /// and NaN, but no number that a float64 cannot hold.
 CLI::Validator finite_number();
 CLI::Validator representable_number();
+
+/// Throws CLI::ValidationError for a --device beside a back end that uses none.
+void check_device(const CLI::App& app, Backend backend);
 
 /// Declares the options --device and --threads.
 template <class Number>

@@ -161,7 +161,8 @@ void add_contact_command(CLI::App& app, Run& run) {
       "Exit status: 0 converged; 3 not converged, the best iterate is written and marked; "
       "4 infeasible or unbounded, likewise; 2 bad usage; 1 any other failure\n");
   declare_contact_options(*command, *arguments);
-  command->callback([arguments, &run] {
+  command->callback([arguments, command, &run] {
+    check_device(*command, arguments->options.backend);
     if (arguments->energy && arguments->report.empty()) {
       throw CLI::ValidationError("--energy", "needs --report, which it adds to");
     }

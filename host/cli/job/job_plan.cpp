@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <tetwarp/itk_space.hpp>
 #include <thread>
 #include <tuple>
@@ -32,15 +33,6 @@ namespace fs = std::filesystem;
 constexpr int symmetric_intent = 1005;  // NIfTI's SYMMATRIX
 
 const std::string order = "the order is: tetwarp warp VOLUME... MESH -o OUT";
-
-std::vector<std::string> inputs_of(const WarpArguments& arguments) {
-  std::vector<std::string> inputs = arguments.files;
-  if (arguments.mesh.rest_file) inputs.push_back(*arguments.mesh.rest_file);
-  if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
-    inputs.push_back(arguments.grid.base);
-  }
-  return inputs;
-}
 
 void check_kinds(const WarpArguments& arguments) {
   for (const std::string& volume : arguments.volumes()) {
@@ -143,12 +135,15 @@ std::vector<std::string> output_names(const fs::path& output, const VolumePlan& 
   return names;
 }
 
-/// Sets names of outputs, and warns of times that the output does not keep.
+/// Sets names of outputs, checks that they can hold the arrays, and warns of times that the output
+/// does not keep.
 void set_outputs(VolumePlan& plan, const fs::path& output, const WarpArguments& arguments) {
   plan.outputs = output_names(output, plan);
   for (const std::string& name : plan.outputs) {
     const std::vector<std::string> files = files_of_output(name, arrays_written(plan, arguments));
     plan.files.insert(plan.files.end(), files.begin(), files.end());
+    check_output_arrays(name, plan.written_grid, arrays_written(plan, arguments),
+                        {.compress = arguments.compress}, plan.is_series);
   }
   if (plan.is_series) {
     std::vector<double> times;
@@ -175,18 +170,11 @@ VolumePlan plan_volume(const std::string& path,
   plan.arrays = choose_arrays(header, arguments, path);
   plan.active = header.active;
   plan.notes = volume_notes(path, header, arguments);
-  for (const ArrayHeader& array : plan.arrays) {
-    const auto is_same = [&](const ArrayHeader& one) { return one.name == array.name; };
-    const PixelType type = std::ranges::find_if(stored.arrays, is_same)->type;
-    if (type == array.type) continue;
-    plan.notes.push_back(fmt::format("{}: {}: labels of {} are written as {}", path, array.name,
-                                     name_of(type), name_of(array.type)));
-  }
+  append(plan.notes, label_notes(path, stored, plan.arrays));
   plan.source_grid = header.grid;
   check_arrays(path, plan.source_grid, plan.arrays, arguments);
   plan.warnings = volume_warnings(path, header, mesh.header(), arguments);
-  const Warnings more = array_warnings(path, plan.arrays, arguments);
-  plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
+  append(plan.warnings, array_warnings(path, plan.arrays, arguments));
   const std::optional<Point3> world = itk_factor(path, header);
   if (!world) take_base_facts(arguments.grid, plan.arrays);
   plan.output_grid = resolve_grid(arguments.grid, header.grid, world, mesh, steps);
@@ -214,11 +202,8 @@ void plan_outputs(VolumePlan& plan,
   plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && plan.steps.size() > 1 &&
                        leaves_time(backend, arguments);
   set_outputs(plan, output, arguments);
-  const auto is_field = [](const ArrayHeader& array) { return nifti_array(array).is_itk_field; };
-  if (has_nifti_name(output.string()) && itk_components(plan.written_grid) == 2 &&
-      std::ranges::any_of(arrays_written(plan, arguments), is_field)) {
-    plan.notes.push_back(output.string() + ": " + itk_slice_note);
-  }
+  append(plan.notes,
+         slice_notes(output.string(), plan.written_grid, arrays_written(plan, arguments)));
 }
 
 /// What the cpu takes for all that one of the processes of this job computes.
@@ -235,17 +220,24 @@ double cpu_seconds_of(const JobPlan& plan, const WarpArguments& arguments) {
 }
 
 /// The name of an output in a folder: that of its volume. A pair .hdr and .img and DICOM images
-/// become one file .nii.gz.
+/// become one file .nii.gz, a pair of .nhdr and samples .nrrd.
 std::string output_name_of(const std::string& volume) {
   fs::path path = fs::absolute(volume).lexically_normal();  // a name of "." and ".." also
   if (path.filename().empty()) path = path.parent_path();   // of a folder with a slash at its end
   std::string name = path.filename().string();
   std::error_code error;
   if (fs::is_directory(volume, error)) return name + ".nii.gz";
-  for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz", ".dcm"}) {
-    if (has_extension(name, end)) return name.substr(0, name.size() - end.size()) + ".nii.gz";
+  constexpr std::pair<std::string_view, std::string_view> written[] = {
+      {".hdr", ".nii.gz"}, {".hdr.gz", ".nii.gz"}, {".img", ".nii.gz"}, {".img.gz", ".nii.gz"},
+      {".dcm", ".nii.gz"}, {".nhdr", ".nrrd"},     {".mgh.gz", ".mgz"}};
+  for (const auto& [end, own] : written) {
+    if (has_extension(name, end)) return name.substr(0, name.size() - end.size()).append(own);
   }
-  check_volume_name(name);
+  if (!has_one_of(name, volume_endings)) {
+    throw IoError(volume, "",
+                  "its name ends like that of no format, and its output would have the same name; "
+                  "rename it, or warp it alone with a name behind -o");
+  }
   return name;
 }
 
@@ -261,7 +253,8 @@ void check_folder(const std::string& folder) {
 /// Checks that all files can be written and that no two of them are the same file.
 void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
   if (!plan.output_folder.empty()) check_folder(plan.output_folder);
-  check_output_files(files_to_write(arguments, plan.outputs()), inputs_of(arguments));
+  check_compress(plan.outputs(), arguments.compress);
+  check_output_files(files_to_write(arguments, plan.outputs()), arguments.inputs());
 }
 
 /// Throws IoError about options that need affine maps, where the mesh has tetrahedra of ten nodes.
@@ -302,13 +295,9 @@ JobPlan plan_job(const WarpArguments& arguments) {
                .warnings = {},
                .notes = {}};
   check_curves(plan.mesh, arguments);
-  plan.warnings = mesh_warnings(plan.mesh.header(), arguments);
+  plan.warnings = mesh_warnings(arguments.mesh_file(), plan.mesh.header(), arguments.mesh);
   const std::int64_t step_count = std::max<std::int64_t>(1, std::ssize(plan.mesh.header().times));
-  try {
-    plan.steps = arguments.steps.of(step_count);
-  } catch (const std::invalid_argument& error) {
-    throw IoError(arguments.mesh_file(), "", error.what());
-  }
+  plan.steps = arguments.steps.of(step_count, arguments.mesh_file());
   const std::vector<std::string> volumes = arguments.volumes();
   const bool several = volumes.size() > 1;
   if (several) plan.output_folder = arguments.output;
@@ -325,8 +314,8 @@ JobPlan plan_job(const WarpArguments& arguments) {
       choose_backend_for(cpu_seconds_of(plan, arguments), arguments.warp);
   for (VolumePlan& planned : plan.volumes) {
     plan_outputs(planned, output_of(planned.path), arguments, plan.mesh, plan.backend, plan.steps);
-    plan.warnings.insert(plan.warnings.end(), planned.warnings.begin(), planned.warnings.end());
-    plan.notes.insert(plan.notes.end(), planned.notes.begin(), planned.notes.end());
+    append(plan.warnings, planned.warnings);
+    append(plan.notes, planned.notes);
   }
   check_room(plan.volumes, arguments);
   check_axes_turn(plan, arguments);

@@ -42,6 +42,13 @@ struct JobResult {
   std::int64_t written = 0;          ///< outputs written
   std::int64_t skipped = 0;          ///< outputs that --resume found complete and up to date
   Warnings warnings;                 ///< in the order in which they were found
+  Warnings notes;                    ///< facts that are no warnings, likewise
 };
+
+/// Adds warnings to the result of a job, and prints them unless it is quiet.
+void add_warnings(const Warnings& warnings, const JobContext& context, JobResult& result);
+
+/// The same of facts that are no warnings.
+void add_notes(const Warnings& notes, const JobContext& context, JobResult& result);
 
 }  // namespace tetwarp::cli

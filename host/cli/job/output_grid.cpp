@@ -116,6 +116,11 @@ Grid resolve(const GridChoice& choice,
              const std::optional<Point3>& world,
              const Bounds& bounds) {
   Grid grid = source;
+  if (!choice.series.empty() && (choice.base == "same" || choice.base == "bounds")) {
+    throw std::invalid_argument(
+        "--like-series is of the folder of DICOM images that --like names; add --like FOLDER, or "
+        "leave it out");
+  }
   check_series(choice.series, {choice.base}, "--like-series");
   if (choice.base == "bounds") {
     grid = bounds();

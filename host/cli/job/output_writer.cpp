@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 
 #include "io/files/extension.hpp"
+#include "io/volume/output_check.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -50,6 +52,30 @@ std::vector<std::string> files_of_output(const std::string& output,
                     name.extension);
   }
   return files;
+}
+
+void check_compress(const std::vector<std::string>& outputs, int level) {
+  const auto is_plain = [](const std::string& output) {
+    return has_extension(output, ".mgh") || has_vtk_image_name(output);
+  };
+  if (level == 0 || !std::ranges::all_of(outputs, is_plain)) return;
+  throw std::invalid_argument(outputs.front() +
+                              ": .mgh and .vti are not packed; leave out --compress, or write .mgz "
+                              "or VTKHDF");
+}
+
+void check_output_arrays(const std::string& output,
+                         const Grid& grid,
+                         const std::vector<ArrayHeader>& arrays,
+                         const VolumeWriteOptions& options,
+                         bool is_temporal) {
+  if (!holds_one_array(output)) {
+    return check_volume_output(output, grid, arrays, options, is_temporal);
+  }
+  const std::vector<std::string> files = files_of_output(output, arrays);
+  for (std::size_t a = 0; a < arrays.size(); ++a) {
+    check_volume_output(files[a], grid, {nifti_array(arrays[a])}, options, is_temporal);
+  }
 }
 
 OutputWriter::OutputWriter(const std::string& output,

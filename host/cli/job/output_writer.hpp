@@ -37,6 +37,18 @@ bool holds_one_array(const std::string& path);
 std::vector<std::string> files_of_output(const std::string& output,
                                          const std::vector<ArrayHeader>& arrays);
 
+/// Throws std::invalid_argument where a level of deflate is given and none of the outputs is
+/// packed.
+void check_compress(const std::vector<std::string>& outputs, int level);
+
+/// Throws IoError about what a file of an output cannot hold, before any is written. Arguments as
+/// of OutputWriter.
+void check_output_arrays(const std::string& output,
+                         const Grid& grid,
+                         const std::vector<ArrayHeader>& arrays,
+                         const VolumeWriteOptions& options,
+                         bool is_temporal);
+
 /// Writes these files region by region; calls and errors as of BlockVolumeWriter.
 class OutputWriter {
  public:

@@ -45,22 +45,6 @@ Json facts_of_output(const std::string& output) {
   return facts;
 }
 
-/// All files that a job reads; a list of files with those that it names.
-Json facts_of_inputs(const WarpArguments& arguments) {
-  Json inputs = Json::array();
-  const auto add = [&](const std::string& role, const std::string& path) {
-    for (const std::string& file : files_of(path)) inputs.push_back(facts_of(role, file));
-  };
-  for (const std::string& volume : arguments.volumes()) add("volume", volume);
-  const bool is_transform = is_transform_file(arguments.mesh_file(), arguments.transform_options());
-  add(is_transform ? "transform" : "mesh", arguments.mesh_file());
-  if (arguments.mesh.rest_file) add("rest", *arguments.mesh.rest_file);
-  if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
-    add("grid", arguments.grid.base);
-  }
-  return inputs;
-}
-
 Json given_as_json(const WarpArguments& arguments) {
   Json options = Json::object();
   for (const auto& [name, values] : arguments.given) {
@@ -111,10 +95,33 @@ std::vector<std::string> files_to_write(const WarpArguments& arguments,
   return files;
 }
 
+InputFacts input_facts(const WarpArguments& arguments) {
+  InputFacts facts;
+  if (!arguments.provenance || arguments.dry_run) return facts;
+  Json inputs = Json::array();
+  // A list of files stands for itself and for those that it names.
+  const auto add = [&](const std::string& role, const std::string& path) {
+    for (const std::string& file : files_of(path)) {
+      facts.times.emplace_back(file, fs::last_write_time(file));
+      inputs.push_back(facts_of(role, file));
+    }
+  };
+  for (const std::string& volume : arguments.volumes()) add("volume", volume);
+  const bool is_transform = is_transform_file(arguments.mesh_file(), arguments.transform_options());
+  add(is_transform ? "transform" : "mesh", arguments.mesh_file());
+  if (arguments.mesh.rest_file) add("rest", *arguments.mesh.rest_file);
+  if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
+    add("grid", arguments.grid.base);
+  }
+  facts.json = json_text(inputs, 0);
+  return facts;
+}
+
 ProvenanceState provenance_state(const WarpArguments& arguments,
+                                 const InputFacts& inputs,
                                  const std::vector<std::string>& outputs) {
   bool is_missing = false;
-  Json inputs;
+  const Json contents = contents_of(Json::parse(inputs.json));
   for (const std::string& output : outputs) {
     const Json facts = read_facts(provenance_file(output));
     std::error_code error;
@@ -122,7 +129,6 @@ ProvenanceState provenance_state(const WarpArguments& arguments,
       is_missing = true;
       continue;
     }
-    if (inputs.is_null()) inputs = contents_of(facts_of_inputs(arguments));
     const Json now = facts_of_output(output);
     const auto is_as_written = [&](const char* file) {
       return contents_of(Json::array({facts.value(file, Json())})) ==
@@ -131,7 +137,7 @@ ProvenanceState provenance_state(const WarpArguments& arguments,
     const bool agrees = facts.value("tetwarp", Json()) == TETWARP_VERSION &&
                         deciding_options(facts.value("options", Json::object())) ==
                             deciding_options(given_as_json(arguments)) &&
-                        contents_of(facts.value("inputs", Json::array())) == inputs &&
+                        contents_of(facts.value("inputs", Json::array())) == contents &&
                         is_as_written("output") && is_as_written("samples");
     if (!agrees) return ProvenanceState::contradicts;
   }
@@ -139,8 +145,17 @@ ProvenanceState provenance_state(const WarpArguments& arguments,
 }
 
 void write_provenance(const WarpArguments& arguments,
+                      const InputFacts& inputs,
                       const std::vector<std::string>& files,
                       const JobResult& result) {
+  if (inputs.json.empty()) return;
+  for (const auto& [file, time] : inputs.times) {
+    std::error_code error;
+    if (fs::last_write_time(file, error) == time) continue;
+    throw IoError(file, "",
+                  "was written while it was warped: what " + files.front() +
+                      " was made from is not known, and not written beside it; run again");
+  }
   Json facts;
   for (const std::string& output : files) {
     const std::string file = provenance_file(output);
@@ -150,8 +165,9 @@ void write_provenance(const WarpArguments& arguments,
                {"written", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
                {"backend", name_of(result.report.backend)},
                {"options", given_as_json(arguments)},
-               {"inputs", facts_of_inputs(arguments)},
-               {"warnings", result.warnings}};
+               {"inputs", Json::parse(inputs.json)},
+               {"warnings", result.warnings},
+               {"notes", result.notes}};
     }
     Json own = facts;
     own.update(facts_of_output(output));

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <set>
 #include <stdexcept>
+#include <tetwarp/error.hpp>
 #include <utility>
 
 namespace tetwarp::cli {
@@ -65,7 +66,7 @@ std::vector<std::int64_t> StepSelection::steps_of(const Item& item, std::int64_t
   if (!item.is_slice) {
     const std::int64_t step = from_end(*item.begin);
     if (step < 0 || step >= step_count) {
-      throw std::invalid_argument(fmt::format("step {} does not exist, the mesh has {} (0 to {})",
+      throw std::invalid_argument(fmt::format("step {} does not exist, there are {} (0 to {})",
                                               *item.begin, step_count, step_count - 1));
     }
     return {step};
@@ -88,15 +89,20 @@ std::vector<std::int64_t> StepSelection::steps_of(const Item& item, std::int64_t
   return steps;
 }
 
-std::vector<std::int64_t> StepSelection::of(std::int64_t step_count) const {
+std::vector<std::int64_t> StepSelection::of(std::int64_t step_count,
+                                            const std::string& file) const {
   std::set<std::int64_t> steps;
   for (const Item& item : items_) {
-    const std::vector<std::int64_t> some = steps_of(item, step_count);
-    steps.insert(some.begin(), some.end());
+    try {
+      const std::vector<std::int64_t> some = steps_of(item, step_count);
+      steps.insert(some.begin(), some.end());
+    } catch (const std::invalid_argument& error) {
+      throw IoError(file, "", error.what());
+    }
   }
   if (steps.empty()) {
-    throw std::invalid_argument(
-        fmt::format("--steps {} selects none of the mesh's {} steps", text_, step_count));
+    throw IoError(file, "",
+                  fmt::format("--steps {} selects none of its {} steps", text_, step_count));
   }
   return {steps.begin(), steps.end()};
 }

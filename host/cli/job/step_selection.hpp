@@ -18,9 +18,9 @@ class StepSelection {
   /// Throws std::invalid_argument on anything else.
   explicit StepSelection(std::string text);
 
-  /// The selected steps of `step_count`, ascending. Throws std::invalid_argument when a single
+  /// The selected steps of the `step_count` of a file, ascending. Throws IoError when a single
   /// number names no step or nothing is selected.
-  std::vector<std::int64_t> of(std::int64_t step_count) const;
+  std::vector<std::int64_t> of(std::int64_t step_count, const std::string& file) const;
 
  private:
   struct Item {

@@ -15,6 +15,7 @@
 
 #include "host/base/pixel_dispatch.hpp"
 #include "host/cli/common/declare.hpp"
+#include "host/cli/job/output_writer.hpp"
 #include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
@@ -80,13 +81,17 @@ std::string unordered_times(const std::string& output, const std::vector<double>
 }
 }  // namespace
 
-Warnings mesh_warnings(const MeshHeader& mesh, const WarpArguments& arguments) {
+Warnings mesh_warnings(const std::string& path,
+                       const MeshHeader& mesh,
+                       const MeshReadOptions& options) {
   Warnings warnings;
-  if (!mesh.merged.empty()) warnings.push_back(arguments.mesh_file() + ": " + mesh.merged);
-  if (!mesh.has_displacement && !mesh.has_moving_points && !arguments.mesh.rest_file) {
-    warnings.push_back(arguments.mesh_file() +
-                       ": the mesh has no point array 'displacement', no points that move and no "
-                       "--rest: nothing is deformed");
+  if (!mesh.merged.empty()) warnings.push_back(path + ": " + mesh.merged);
+  if (!mesh.has_displacement && !mesh.has_moving_points && !options.rest_file) {
+    warnings.push_back(
+        path +
+        ": the mesh has no point array 'displacement', no points that move "
+        "and no --rest: nothing is deformed" +
+        (kind_of(path) == FileKind::mesh ? "" : "; --displacement names another point array"));
   }
   return warnings;
 }
@@ -138,6 +143,30 @@ Warnings volume_notes(const std::string& path,
                     ", results of an earlier warp; --array names what to warp");
   }
   return notes;
+}
+
+Warnings label_notes(const std::string& path,
+                     const VolumeHeader& stored,
+                     const std::vector<ArrayHeader>& arrays) {
+  Warnings notes;
+  for (const ArrayHeader& array : arrays) {
+    const PixelType type = std::ranges::find(stored.arrays, array.name, &ArrayHeader::name)->type;
+    if (type == array.type) continue;
+    notes.push_back(fmt::format("{}: {}: labels of {} are written as {}", path, array.name,
+                                name_of(type), name_of(array.type)));
+  }
+  return notes;
+}
+
+Warnings slice_notes(const std::string& output,
+                     const Grid& grid,
+                     const std::vector<ArrayHeader>& arrays) {
+  const auto is_field = [](const ArrayHeader& array) { return nifti_array(array).is_itk_field; };
+  if (!has_nifti_name(output) || itk_components(grid) != 2 ||
+      std::ranges::none_of(arrays, is_field)) {
+    return {};
+  }
+  return {output + ": " + itk_slice_note};
 }
 
 Warnings array_warnings(const std::string& volume,
@@ -227,13 +256,19 @@ void print_warnings(const Warnings& warnings, const std::string& job) {
   }
 }
 
+void print_mesh_warnings(const std::string& path,
+                         const MeshHeader& mesh,
+                         const MeshReadOptions& options) {
+  print_warnings(mesh_warnings(path, mesh, options), "");
+}
+
 void print_merged(const std::string& path, const std::string& merged) {
   if (!merged.empty()) print_warnings({path + ": " + merged}, "");
 }
 
 void print_notes(const std::string& path, const std::vector<std::string>& notes) {
   for (const std::string& note : notes) {
-    fmt::print(stderr, "tetwarp: {}: {}\n", path, one_line(note));
+    fmt::print(stderr, "tetwarp: {}{}{}\n", path, path.empty() ? "" : ": ", one_line(note));
   }
 }
 

@@ -15,8 +15,14 @@ namespace tetwarp::cli {
 
 using Warnings = std::vector<std::string>;
 
-/// A mesh without a deformation.
-Warnings mesh_warnings(const MeshHeader& mesh, const WarpArguments& arguments);
+inline void append(Warnings& all, const Warnings& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// Cells of a mesh that were merged, and a mesh without a deformation.
+Warnings mesh_warnings(const std::string& path,
+                       const MeshHeader& mesh,
+                       const MeshReadOptions& options);
 
 /// A volume of several steps of which one is warped by all steps of the mesh, or some have no pair.
 /// Unless --array names arrays: those that are not read, and those of float16, which become
@@ -31,6 +37,20 @@ Warnings volume_warnings(const std::string& path,
 Warnings volume_notes(const std::string& path,
                       const VolumeHeader& volume,
                       const WarpArguments& arguments);
+
+/// Labels that are stored as floats and written as integers.
+/// @param stored  the same file, read without VolumeReadOptions::are_labels
+/// @param arrays  those that are warped
+Warnings label_notes(const std::string& path,
+                     const VolumeHeader& stored,
+                     const std::vector<ArrayHeader>& arrays);
+
+/// A displacement field of a single slice, of which NIfTI files hold two components.
+/// @param grid    of the output
+/// @param arrays  that are written
+Warnings slice_notes(const std::string& output,
+                     const Grid& grid,
+                     const std::vector<ArrayHeader>& arrays);
 
 /// A background that the type of an array cannot hold; densities and totals that its integers
 /// round.
@@ -57,7 +77,13 @@ void refuse_warnings(const Warnings& warnings);
 void print_warnings(const Warnings& warnings, const std::string& job);
 
 /// Prints facts about a file on standard error, one line each.
+/// @param path  that they are about, or the name of a job; empty: they name it
 void print_notes(const std::string& path, const std::vector<std::string>& notes);
+
+/// Prints mesh_warnings().
+void print_mesh_warnings(const std::string& path,
+                         const MeshHeader& mesh,
+                         const MeshReadOptions& options);
 
 /// Prints the warning about cells of a mesh that were merged, and what of a file was left out, if
 /// there is any.

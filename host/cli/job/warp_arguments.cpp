@@ -298,6 +298,13 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
 }
 }  // namespace
 
+std::vector<std::string> WarpArguments::inputs() const {
+  std::vector<std::string> inputs = files;
+  if (mesh.rest_file) inputs.push_back(*mesh.rest_file);
+  if (grid.base != "same" && grid.base != "bounds") inputs.push_back(grid.base);
+  return inputs;
+}
+
 void declare_warp_options(CLI::App& app, WarpArguments& arguments) {
   declare_files(app, arguments);
   declare_grid(app, arguments);
@@ -363,6 +370,7 @@ WarpArguments parse_warp_arguments(std::vector<std::string> words) {
   app.parse(std::move(words));
   arguments.given = given_options(app);
   check_complete(arguments);
+  check_device(app, arguments.warp.backend);
   return arguments;
 }
 

@@ -51,6 +51,7 @@ struct WarpArguments {
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
+  std::vector<std::string> inputs() const;  ///< all files that are named to be read
   /// How to read the last file if it is a transform.
   TransformReadOptions transform_options() const { return {axes, fsl, files.front(), output}; }
   Quantity quantity_of(const std::string& array) const {

@@ -87,6 +87,8 @@ void add_simulate_command(CLI::App& app, Run& run) {
   command->callback([arguments, command, &run] {
     arguments->has_filter = command->get_option("--filter")->count() > 0;
     check_complete(*arguments);
+    check_warping(*command, *arguments);
+    check_device(*command, arguments->simulate.backend);
     run = [arguments] { return run_simulate(*arguments); };
   });
 }

@@ -147,6 +147,20 @@ void declare_simulate_options(CLI::App& app, SimulateArguments& arguments) {
   declare_warping(app, arguments);
 }
 
+void check_warping(const CLI::App& app, const SimulateArguments& arguments) {
+  if (arguments.warps) return;
+  const auto is_given = [&](const char* option) { return app.get_option(option)->count() > 0; };
+  for (const char* option : {"--compress", "--outputs"}) {
+    if (is_given(option)) refuse(option, "needs --warp");
+  }
+  if (!arguments.pictures.cast.empty()) return;
+  for (const char* option : {"--grid", "--like", "--like-series", "--dims", "--origin", "--spacing",
+                             "--direction", "--filter", "--label-rule", "--overshoot",
+                             "--antialias", "--intensity", "--outside", "--background"}) {
+    if (is_given(option)) refuse(option, "needs --warp or --cast");
+  }
+}
+
 void check_complete(const SimulateArguments& arguments) {
   if (arguments.scene_name == "list") return;
   if (arguments.scene_file.empty() == arguments.scene_name.empty()) {
@@ -156,10 +170,6 @@ void check_complete(const SimulateArguments& arguments) {
   check_file_options(arguments);
   check_pictures(arguments);
   check_sampling(arguments.warp);
-  if (!arguments.extra.empty() && !arguments.warps) refuse("--outputs", "needs --warp");
-  if (!arguments.grid.series.empty() && !arguments.warps && arguments.pictures.cast.empty()) {
-    refuse("--like-series", "needs --warp or --cast");
-  }
 }
 
 }  // namespace tetwarp::cli

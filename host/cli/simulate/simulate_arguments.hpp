@@ -54,6 +54,9 @@ struct SimulateArguments {
 /// Declares every option and binds it to `arguments`, which must outlive `app`.
 void declare_simulate_options(CLI::App& app, SimulateArguments& arguments);
 
+/// Throws CLI::ValidationError for options of warped volumes where no volume is warped.
+void check_warping(const CLI::App& app, const SimulateArguments& arguments);
+
 /// Throws CLI::ValidationError when options are missing or contradict each other.
 void check_complete(const SimulateArguments& arguments);
 

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
 #include <tetwarp/itk_space.hpp>
+#include <utility>
 #include <vector>
 
 #include "host/cli/common/axes_option.hpp"
@@ -22,6 +25,8 @@
 #include "host/cli/job/output_files.hpp"
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/step_selection.hpp"
+#include "host/cli/job/warnings.hpp"
+#include "host/cli/job/warp_arguments.hpp"
 #include "host/cli/tools/transform_chain.hpp"
 
 namespace tetwarp::cli {
@@ -37,13 +42,55 @@ struct ComposeArguments {
   int threads = 0;
   int compress = 0;
   bool quiet = false;
+  std::vector<std::string> given;  ///< long names of the options, without dashes
 };
 
+/// One link. Of a mesh in VTKHDF the array is 'displacement'; --rest is of meshes without an array.
+/// @param world  of the points; see TransformReadOptions
+/// @param used   out: names of options that it takes are added
+ChainLink read_link(const ComposeArguments& arguments,
+                    const std::string& word,
+                    const std::optional<Point3>& world,
+                    std::set<std::string>& used) {
+  const std::string path = ChainLink::path_of(word);
+  const FileKind kind = kind_of(path);
+  MeshReadOptions options = arguments.mesh;
+  options.rest_file.reset();
+  if (kind == FileKind::mesh) options.import.displacement.reset();
+  ChainLink link(word, options, arguments.axes, world);
+  if (kind == FileKind::nifti || kind == FileKind::image) used.insert("axes");
+  if (link.mesh() || link.step_count() > 1) used.insert("steps");
+  if (!link.mesh()) return link;
+  used.insert({"ten-nodes", "rest-step"});
+  if (kind != FileKind::mesh) used.insert({"axes", "displacement"});
+  const bool takes_rest = arguments.mesh.rest_file && !link.mesh()->header().has_displacement;
+  if (takes_rest) {
+    options.rest_file = arguments.mesh.rest_file;
+    used.insert("rest");
+  }
+  print_mesh_warnings(path, link.mesh()->header(), options);
+  return takes_rest ? ChainLink(word, options, arguments.axes, world) : std::move(link);
+}
+
+/// All links. Throws std::invalid_argument about an option that none of them takes.
 std::vector<ChainLink> read_links(const ComposeArguments& arguments,
                                   const std::optional<Point3>& world) {
+  const std::map<std::string, std::string> takers{
+      {"steps", "meshes and fields of several steps"},
+      {"ten-nodes", "meshes"},
+      {"rest-step", "meshes"},
+      {"rest", "meshes without the point array of their displacement"},
+      {"displacement", "meshes in .msh, .vtu and .vtk"},
+      {"axes", "fields in images and meshes in .msh, .vtu and .vtk"}};
   std::vector<ChainLink> links;
+  std::set<std::string> used;
   for (const std::string& word : arguments.words) {
-    links.emplace_back(word, arguments.mesh, arguments.axes, world);
+    links.push_back(read_link(arguments, word, world, used));
+  }
+  for (const auto& [option, taker] : takers) {
+    if (std::ranges::count(arguments.given, option) == 0 || used.contains(option)) continue;
+    throw std::invalid_argument(
+        fmt::format("--{} is for {}, and none is joined; leave it out", option, taker));
   }
   return links;
 }
@@ -51,16 +98,17 @@ std::vector<ChainLink> read_links(const ComposeArguments& arguments,
 /// Those of the meshes and fields with several steps, which must have equally many.
 std::vector<std::int64_t> steps_of(const ComposeArguments& arguments,
                                    const std::vector<ChainLink>& links) {
-  std::int64_t count = 1;
+  const ChainLink* first = &links.front();
   for (const ChainLink& link : links) {
     if (link.step_count() == 1) continue;
-    if (count > 1 && link.step_count() != count) {
+    if (first->step_count() > 1 && link.step_count() != first->step_count()) {
       throw IoError(link.path(), "",
-                    fmt::format("has {} steps, another file has {}", link.step_count(), count));
+                    fmt::format("has {} steps, {} has {}; give files of equally many, or of one",
+                                link.step_count(), first->path(), first->step_count()));
     }
-    count = link.step_count();
+    if (first->step_count() == 1) first = &link;
   }
-  return arguments.steps.of(count);
+  return arguments.steps.of(first->step_count(), first->path());
 }
 
 /// The displacements of the chosen step, slice by slice of the grid.
@@ -130,18 +178,21 @@ int run_compose(const ComposeArguments& arguments) {
   const std::vector<std::int64_t> steps = steps_of(arguments, links);
   std::vector<std::string> inputs{arguments.like};
   for (const ChainLink& link : links) inputs.push_back(link.path());
+  if (arguments.mesh.rest_file) inputs.push_back(*arguments.mesh.rest_file);
   std::vector<std::string> names;
+  const ArrayHeader array{.name = "tetwarp_displacement",
+                          .components = 3,
+                          .nifti = facts_of_extra(first_facts(like), 3),
+                          .is_itk_field = true};
   for (const std::int64_t step : steps) {
     const SplitName name = split_name(arguments.output);
     names.push_back(steps.size() == 1 ? arguments.output
                                       : fmt::format("{}_{:04}{}", name.stem, step, name.extension));
     check_output_file(names.back(), inputs);
+    check_output_arrays(names.back(), grid, {array}, {.compress = arguments.compress}, false);
   }
+  check_compress(names, arguments.compress);
   const InterruptFlag flag;
-  const ArrayHeader array{.name = "tetwarp_displacement",
-                          .components = 3,
-                          .nifti = facts_of_extra(first_facts(like), 3),
-                          .is_itk_field = true};
   for (std::size_t s = 0; s < steps.size(); ++s) {
     ChainNotes notes;
     for (ChainLink& link : links) link.choose(steps[s]);
@@ -200,6 +251,20 @@ void add_compose_command(CLI::App& app, Run& run) {
           },
           "steps of the meshes and fields: numbers and half-open slices, e.g. 0:10:2 or -1 [all]")
       ->type_name("LIST");
+  command
+      ->add_option("--displacement", arguments->mesh.import.displacement,
+                   "of meshes in .msh, .vtu and .vtk: point array (Gmsh: node data) that deforms "
+                   "them [displacement]")
+      ->type_name("NAME");
+  command
+      ->add_option("--rest", arguments->mesh.rest_file,
+                   "mesh file that holds the rest positions of meshes without such an array")
+      ->type_name("FILE");
+  command
+      ->add_option("--rest-step", arguments->mesh.rest_step,
+                   "step that holds the rest positions of moving points [0]")
+      ->check(at_least(0))
+      ->type_name("N");
   add_ten_nodes(*command, arguments->mesh.import.keeps_curved);
   add_axes(*command, arguments->axes,
            "axes of meshes in .msh, .vtu and .vtk, and of the components of fields; lps is turned "
@@ -210,7 +275,10 @@ void add_compose_command(CLI::App& app, Run& run) {
       ->check(between(0, 9))
       ->type_name("L");
   add_quiet(*command, arguments->quiet);
-  command->callback([arguments, &run] { run = [arguments] { return run_compose(*arguments); }; });
+  command->callback([arguments, command, &run] {
+    for (const auto& [name, values] : given_options(*command)) arguments->given.push_back(name);
+    run = [arguments] { return run_compose(*arguments); };
+  });
 }
 
 }  // namespace tetwarp::cli

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
@@ -34,6 +36,25 @@ struct DeformArguments {
   std::optional<Axes> axes;
   bool quiet = false;
 };
+
+/// Throws CLI::ValidationError for options that the kind of deformation does not use.
+void check_kind_options(const CLI::App& command, Deformation kind) {
+  using Kinds = std::set<Deformation>;
+  const std::map<std::string, Kinds> users{
+      {"--axis", {Deformation::twist, Deformation::bend, Deformation::swim, Deformation::rotate}},
+      {"--amount",
+       {Deformation::twist, Deformation::bend, Deformation::swim, Deformation::rotate,
+        Deformation::random}},
+      {"--seed", {Deformation::random}},
+      {"--offset", {Deformation::translate}}};
+  for (const auto& [option, kinds] : users) {
+    if (command.get_option(option)->count() == 0 || kinds.contains(kind)) continue;
+    std::vector<std::string> names;
+    for (const Deformation user : kinds) names.emplace_back(name_of(user));
+    throw CLI::ValidationError(
+        option, "is for --kind " + listed(names) + ", not for " + name_of(kind) + "; leave it out");
+  }
+}
 
 int run_deform(const DeformArguments& arguments) {
   check_mesh(arguments.input, "usage: tetwarp deform MESH -o MESH");
@@ -84,7 +105,8 @@ void add_deform_command(CLI::App& app, Run& run) {
       ->type_name("X,Y,Z");
   add_mesh_axes(*command, arguments->axes);
   add_quiet(*command, arguments->quiet);
-  command->callback([arguments, &run] {
+  command->callback([arguments, command, &run] {
+    check_kind_options(*command, arguments->deform.kind);
     if (!std::isfinite(arguments->deform.amount)) {
       throw CLI::ValidationError("--amount", "expected a finite number");
     }

@@ -22,6 +22,7 @@ struct ImportArguments {
   std::string input;
   std::string output;
   VolumeWriteOptions write;
+  bool has_compress = false;  ///< --compress is given
   MeshImportOptions mesh;
   std::optional<Axes> axes;
   std::string series;
@@ -82,6 +83,12 @@ void run_volume_import(const ImportArguments& arguments) {
 }
 
 void run_mesh_import(const ImportArguments& arguments) {
+  if (!arguments.series.empty() || arguments.has_compress) {
+    throw IoError(arguments.input, "",
+                  std::string("is a mesh; leave out ") +
+                      (arguments.has_compress ? "--compress" : "--series") +
+                      ", which is for images");
+  }
   MeshImportOptions options = arguments.mesh;
   options.axes = arguments.axes.value_or(Axes::ras);
   options.keeps_curved = true;
@@ -132,7 +139,9 @@ void add_import_command(CLI::App& app, Run& run) {
   command->add_option("-o,--output", arguments->output, "volume or mesh to write")
       ->required()
       ->type_name("OUT");
-  command->add_option("--compress", arguments->write.compress, "deflate level, 0 for none [0]")
+  command
+      ->add_option("--compress", arguments->write.compress,
+                   "of an image: deflate level, 0 for none [0]")
       ->check(between(0, 9))
       ->type_name("L");
   command
@@ -146,7 +155,10 @@ void add_import_command(CLI::App& app, Run& run) {
            "they are]");
   add_series(*command, arguments->series);
   add_quiet(*command, arguments->quiet);
-  command->callback([arguments, &run] { run = [arguments] { return run_import(*arguments); }; });
+  command->callback([arguments, command, &run] {
+    arguments->has_compress = command->get_option("--compress")->count() > 0;
+    run = [arguments] { return run_import(*arguments); };
+  });
 }
 
 }  // namespace tetwarp::cli

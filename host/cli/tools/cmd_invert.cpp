@@ -172,7 +172,7 @@ int run_invert(const InvertArguments& arguments) {
   MeshReadOptions options = arguments.mesh;
   options.import.axes = axes_of_mesh(arguments.input, arguments.axes);
   const MeshReader reader(arguments.input, options);
-  print_merged(arguments.input, reader.header().merged);
+  print_mesh_warnings(arguments.input, reader.header(), arguments.mesh);
   const auto count = std::ssize(reader.header().times);
   const std::int64_t step = arguments.step.value_or(count - 1);
   if (step >= count || (count > 1 && !arguments.step)) {
@@ -188,6 +188,7 @@ int run_invert(const InvertArguments& arguments) {
              CurvedMesh{{deformed, mesh.mesh.tets, mesh.mesh.hexes}, mesh.mid_nodes},
              {differences(mesh.mesh.rest_positions, deformed)},
              {reader.header().times[static_cast<std::size_t>(step)]});
+  print_left_out(arguments.input, reader.header().not_read);
   print_check(arguments, check);
   if (arguments.quiet) return 0;
   fmt::print(

@@ -127,6 +127,9 @@ void check_options(const MeshArguments& arguments) {
   const char* const refused = !is_of_surface                ? nullptr
                               : arguments.lattice.threshold ? "--threshold"
                               : arguments.lattice.hexahedra ? "--hexahedra"
+                              : !arguments.array.empty()    ? "--array"
+                              : !arguments.series.empty()   ? "--series"
+                              : arguments.step              ? "--step"
                                                             : nullptr;
   if (refused != nullptr) {
     throw CLI::ValidationError(refused, "is not for --from-surface; leave it out");

@@ -62,14 +62,6 @@ void check_axes_turn(const PointsArguments& arguments, const PointFile& file) {
                 "names its axes or is VTKHDF, as the mesh; leave out --axes, which is for others");
 }
 
-std::vector<std::int64_t> selected_steps(const PointsArguments& arguments, const MeshReader& mesh) {
-  try {
-    return arguments.steps.of(std::ssize(mesh.header().times));
-  } catch (const std::invalid_argument& error) {
-    throw IoError(arguments.mesh_file, "", error.what());
-  }
-}
-
 MappedPoints moved(const PointsArguments& arguments,
                    const MeshReader& mesh,
                    std::int64_t step,
@@ -118,8 +110,9 @@ int run_points(const PointsArguments& arguments) {
   MeshReadOptions read = arguments.mesh;
   if (kind_of(arguments.mesh_file) != FileKind::mesh) read.import.axes = axes;
   const MeshReader mesh(arguments.mesh_file, read);
-  print_merged(arguments.mesh_file, mesh.header().merged);
-  const std::vector<std::int64_t> steps = selected_steps(arguments, mesh);
+  print_mesh_warnings(arguments.mesh_file, mesh.header(), arguments.mesh);
+  const std::vector<std::int64_t> steps =
+      arguments.steps.of(std::ssize(mesh.header().times), arguments.mesh_file);
   const std::vector<std::string> names = output_names(arguments, steps);
   std::vector<std::string> inputs = {arguments.input, arguments.mesh_file};
   if (!arguments.like.empty()) inputs.push_back(arguments.like);
@@ -208,7 +201,10 @@ void add_points_command(CLI::App& app, Run& run) {
   add_device(*command, arguments->map.device);
   add_threads(*command, arguments->map.threads, "threads, 0 for all cores [0]");
   add_quiet(*command, arguments->quiet);
-  command->callback([arguments, &run] { run = [arguments] { return run_points(*arguments); }; });
+  command->callback([arguments, command, &run] {
+    check_device(*command, arguments->map.backend);
+    run = [arguments] { return run_points(*arguments); };
+  });
 }
 
 }  // namespace tetwarp::cli

@@ -31,8 +31,14 @@ class ChainLink {
             const std::optional<Axes>& axes,
             const std::optional<Point3>& world);
 
+  /// The path in a word of the constructor.
+  static std::string path_of(const std::string& word) {
+    return word.substr(0, word.size() - (word.ends_with("^-1") ? 3 : 0));
+  }
+
   const std::string& path() const { return path_; }
-  std::int64_t step_count() const;  ///< 1 but for meshes and fields
+  const std::optional<MeshReader>& mesh() const { return mesh_; }  ///< of other links none
+  std::int64_t step_count() const;                                 ///< 1 but for meshes and fields
   bool iterates() const;  ///< it is the inverse of a field or a spline, see invert_field()
 
   /// Chooses the step that is applied; a file with a single step keeps that.

@@ -191,6 +191,7 @@ void declare_screens(CLI::App& app, view::ViewOptions& options) {
 }
 
 void check_view(const view::ViewOptions& options, const CLI::App& command) {
+  check_device(command, meaning_of("--backend", options.backend, choices_of<Backend>()));
   const bool has_limit = options.max_step_seconds < std::numeric_limits<double>::infinity();
   if (has_limit && !options.replay.empty()) {
     throw CLI::ValidationError(

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <tetwarp/error.hpp>
@@ -21,12 +20,10 @@
 
 #include "host/base/parallel.hpp"
 #include "host/cli/common/declare.hpp"
-#include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/common/json_text.hpp"
-#include "host/cli/job/job_plan.hpp"
-#include "host/cli/job/provenance.hpp"
 #include "host/cli/warp/batch_file.hpp"
+#include "host/cli/warp/batch_order.hpp"
 #include "host/cli/warp/job_process.hpp"
 #include "host/cli/warp/transform_job.hpp"
 #include "host/cli/warp/warp_job.hpp"
@@ -54,43 +51,6 @@ void write_report(const std::string& path, const Outcome& outcome, bool is_ended
   write_finished_file(path, json_text(report, 2) + "\n");
 }
 
-/// The files that a job will write, reports included. Where planning fails, e.g. because an earlier
-/// job makes the input, the output that the job names.
-std::vector<std::string> files_written(const BatchJob& job) {
-  if (!job.error.empty()) return {};
-  std::vector<std::string> files;
-  try {
-    files = names_transform(job.arguments) ? transform_job_files(job.arguments)
-                                           : plan_job(job.arguments).outputs();
-  } catch (const std::exception&) {
-    files = {job.arguments.output};
-  }
-  return files_to_write(job.arguments, files);
-}
-
-/// Throws IoError when two jobs, or a job and the batch report, write the same file.
-void check_collisions(const std::vector<BatchJob>& jobs, const WarpArguments& shared) {
-  std::map<std::string, std::string> writers;
-  const auto claim = [&](const std::string& file, const std::string& writer) {
-    const auto [first, is_new] = writers.emplace(canonical_path(file), writer);
-    if (!is_new && first->second != writer) {
-      throw IoError(file, "",
-                    fmt::format("{} and {} both write it; nothing was started, give one of them "
-                                "another name",
-                                first->second, writer));
-    }
-  };
-  if (!shared.report.empty()) {
-    check_output_file(shared.report, {shared.batch});
-    claim(shared.report, "the report");
-  }
-  for (std::size_t j = 0; j < jobs.size(); ++j) {
-    stop_if_interrupted();
-    for (const std::string& file : files_written(jobs[j]))
-      claim(file, fmt::format("job {}", j + 1));
-  }
-}
-
 void fail(Outcome& outcome, const std::string& name, Json report, const std::string& reason) {
   fmt::print(stderr, "tetwarp: {}: {}\n", name, reason);
   ++outcome.failed;
@@ -103,8 +63,8 @@ std::string name_of_job(int number) {
   return fmt::format("job {}", number);
 }
 
-/// The report of a job that has not run.
-Json files_of_job(const BatchJob& job, int number) {
+/// What the report says of a job before it runs.
+Json report_head(const BatchJob& job, int number) {
   Json files{{"job", number}, {"volumes", job.volumes}, {"mesh", job.mesh}, {"output", job.output}};
   if (!job.left_out.empty()) files["defaults_left_out"] = job.left_out;
   return files;
@@ -115,9 +75,27 @@ JobResult run_by_kind(const WarpArguments& arguments, const JobContext& context)
                                     : run_warp_job(arguments, context);
 }
 
+std::string summary_by_kind(const WarpArguments& arguments, const JobResult& result) {
+  return names_transform(arguments) ? transform_summary(arguments, result) : summary(result);
+}
+
+/// What of a batch has ended.
+enum class JobState { open, ended, failed };
+
+/// Why a job is not run: an earlier one, which was to write an input of it, has failed. Empty: it
+/// may run.
+std::string missing_input(const std::vector<Wait>& waits, const std::vector<JobState>& states) {
+  for (const Wait& wait : waits) {
+    if (wait.input.empty() || states[wait.job] != JobState::failed) continue;
+    return fmt::format("is not run: {} failed, which writes its input '{}'",
+                       name_of_job(static_cast<int>(wait.job) + 1), wait.input);
+  }
+  return {};
+}
+
 void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
   const std::string name = name_of_job(number);
-  Json report = files_of_job(job, number);
+  Json report = report_head(job, number);
   if (!job.error.empty()) {
     fail(outcome, name, report, job.error);
     return;
@@ -126,16 +104,13 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
     const JobResult result = run_by_kind(job.arguments, {.label = name, .shows_progress = !quiet});
     report.update(Json::parse(report_json(result)));
     if (!result.refusal.empty()) {
-      if (!quiet) fmt::print("{}: {}", name, summary(result));
+      if (!quiet) fmt::print("{}: {}", name, summary_by_kind(job.arguments, result));
       fail(outcome, name, report, result.refusal);
       return;
     }
     ++(result.written == 0 && result.plans.empty() ? outcome.skipped : outcome.done);
     outcome.reports.push_back(report);
-    if (!quiet) {
-      fmt::print(stderr, "{}", storing_note(result.report));
-      fmt::print("{}: {}", name, summary(result));
-    }
+    if (!quiet) fmt::print("{}: {}", name, summary_by_kind(job.arguments, result));
   } catch (const Cancelled&) {
     report["status"] = "interrupted";
     outcome.reports.push_back(report);
@@ -167,8 +142,14 @@ double planned_memory(const BatchJob& job) {
 /// Jobs as processes, at most some of them at a time, as far as their memory fits.
 class SideBySide {
  public:
-  SideBySide(const std::vector<BatchJob>& jobs, const WarpArguments& shared, Outcome& outcome)
+  /// @param waits  of waits_of_jobs()
+  SideBySide(const std::vector<BatchJob>& jobs,
+             std::vector<std::vector<Wait>> waits,
+             const WarpArguments& shared,
+             Outcome& outcome)
       : jobs_(jobs),
+        waits_(std::move(waits)),
+        states_(jobs.size(), JobState::open),
         shared_(shared),
         outcome_(outcome),
         folder_(std::filesystem::temp_directory_path() /
@@ -192,7 +173,7 @@ class SideBySide {
     for (Running& job : running_) {
       job.process->interrupt();
       while (!job.process->has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      Json report = files_of_job(jobs_[job.index], number_of(job.index));
+      Json report = report_head(jobs_[job.index], number_of(job.index));
       report["status"] = "interrupted";
       outcome_.reports.push_back(report);
     }
@@ -201,7 +182,8 @@ class SideBySide {
  private:
   struct Waiting {
     std::size_t index;
-    double memory;  ///< -1: not known
+    double memory;    ///< -1: not known
+    bool is_planned;  ///< false: the files that earlier jobs write for it were not complete
   };
   struct Running {
     std::size_t index;
@@ -211,22 +193,19 @@ class SideBySide {
 
   static int number_of(std::size_t index) { return static_cast<int>(index) + 1; }
 
-  /// Plans the memory of all jobs and states it. Jobs that cannot be planned come last, alone.
+  /// Plans the memory of all jobs and states it.
   void plan() {
-    std::vector<Waiting> unknown;
     std::vector<double> sizes;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
       stop_if_interrupted();
       if (!jobs_[j].error.empty()) {
-        fail(outcome_, name_of_job(number_of(j)), files_of_job(jobs_[j], number_of(j)),
-             jobs_[j].error);
+        refuse(j, jobs_[j].error);
         continue;
       }
       const double memory = planned_memory(jobs_[j]);
-      (memory < 0 ? unknown : waiting_).push_back({j, memory});
+      waiting_.push_back({j, memory, waits_[j].empty()});
       sizes.push_back(std::max(memory, 0.0));
     }
-    waiting_.insert(waiting_.end(), unknown.begin(), unknown.end());
     std::ranges::sort(sizes, std::greater());
     double together = 0;
     const auto beside = std::min(sizes.size(), static_cast<std::size_t>(shared_.jobs));
@@ -240,18 +219,44 @@ class SideBySide {
                together > available_ ? ", fewer will run at a time" : "");
   }
 
+  void refuse(std::size_t index, const std::string& reason) {
+    states_[index] = JobState::failed;
+    fail(outcome_, name_of_job(number_of(index)), report_head(jobs_[index], number_of(index)),
+         reason);
+  }
+
+  /// Whether a job fits beside those that run. One that cannot be planned runs alone.
+  bool fits(const Waiting& next) const {
+    double taken = std::max(next.memory, 0.0);
+    bool is_alone = next.memory < 0;
+    for (const Running& job : running_) {
+      taken += std::max(job.memory, 0.0);
+      is_alone = is_alone || job.memory < 0;
+    }
+    return running_.empty() || (!is_alone && taken <= available_);
+  }
+
+  /// Starts jobs in their order; those that have to wait for others are passed over.
   void start_some() {
-    while (!waiting_.empty() && running_.size() < static_cast<std::size_t>(shared_.jobs)) {
-      const Waiting next = waiting_.front();
-      double taken = std::max(next.memory, 0.0);
-      bool is_alone = next.memory < 0;
-      for (const Running& job : running_) {
-        taken += std::max(job.memory, 0.0);
-        is_alone = is_alone || job.memory < 0;
+    for (std::size_t n = 0;
+         n < waiting_.size() && running_.size() < static_cast<std::size_t>(shared_.jobs);) {
+      Waiting& next = waiting_[n];
+      const std::vector<Wait>& waits = waits_[next.index];
+      const auto is_open = [&](const Wait& wait) { return states_[wait.job] == JobState::open; };
+      if (std::ranges::any_of(waits, is_open)) {
+        ++n;
+        continue;
       }
-      if (!running_.empty() && (is_alone || taken > available_)) return;
-      waiting_.erase(waiting_.begin());
-      start(next);
+      const std::string missing = missing_input(waits, states_);
+      if (missing.empty()) {
+        if (!next.is_planned) next.memory = planned_memory(jobs_[next.index]);
+        next.is_planned = true;
+        if (!fits(next)) return;
+        start(next);
+      } else {
+        refuse(next.index, missing);
+      }
+      waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(n));
     }
   }
 
@@ -263,7 +268,7 @@ class SideBySide {
   void start(const Waiting& job) {
     std::vector<std::string> words = jobs_[job.index].words;
     words.insert(words.begin(), "warp");
-    words.emplace_back("--quiet");
+    if (shared_.quiet) words.emplace_back("--quiet");
     if (jobs_[job.index].arguments.report.empty()) {
       words.push_back("--report=" + report_of(job.index));
     }
@@ -291,13 +296,16 @@ class SideBySide {
 
   void report_end(const Running& job) {
     const std::string name = name_of_job(number_of(job.index));
-    Json report = files_of_job(jobs_[job.index], number_of(job.index));
+    Json report = report_head(jobs_[job.index], number_of(job.index));
     const ProcessEnd& end = job.process->end();
+    states_[job.index] = end.exit_code == 0 ? JobState::ended : JobState::failed;
     if (end.exit_code == interrupted_exit_code) {
       report["status"] = "interrupted";
       outcome_.reports.push_back(report);
       return;
     }
+    for (const std::string& line : end.notes) fmt::print(stderr, "tetwarp: {}: {}\n", name, line);
+    for (const std::string& line : end.printed) fmt::print("{}: {}\n", name, line);
     if (end.exit_code != 0) {
       fail(outcome_, name, report,
            end.problem.empty() ? fmt::format("ended with code {}", end.exit_code) : end.problem);
@@ -308,15 +316,11 @@ class SideBySide {
     const bool is_skipped = report.value("status", "") == "skipped";
     ++(is_skipped ? outcome_.skipped : outcome_.done);
     outcome_.reports.push_back(report);
-    if (shared_.quiet) return;
-    for (const Json& warning : report["warnings"]) {
-      fmt::print(stderr, "tetwarp: {}: warning: {}\n", name, warning.get<std::string>());
-    }
-    fmt::print("{}: {}, {:.2f} s: {}\n", name, report.value("status", ""),
-               report["timings"].value("total", 0.0), report.value("output", ""));
   }
 
   const std::vector<BatchJob>& jobs_;
+  std::vector<std::vector<Wait>> waits_;
+  std::vector<JobState> states_;
   const WarpArguments& shared_;
   Outcome& outcome_;
   std::filesystem::path folder_;  ///< of the jobs' reports
@@ -326,10 +330,19 @@ class SideBySide {
 };
 
 void run_one_by_one(const std::vector<BatchJob>& jobs,
+                    const std::vector<std::vector<Wait>>& waits,
                     const WarpArguments& shared,
                     Outcome& outcome) {
+  std::vector<JobState> states(jobs.size(), JobState::open);
   for (std::size_t j = 0; j < jobs.size() && !is_interrupted(); ++j) {
-    run_job(jobs[j], static_cast<int>(j) + 1, shared.quiet, outcome);
+    const int number = static_cast<int>(j) + 1, failed = outcome.failed;
+    const std::string missing = missing_input(waits[j], states);
+    if (missing.empty()) {
+      run_job(jobs[j], number, shared.quiet, outcome);
+    } else {
+      fail(outcome, name_of_job(number), report_head(jobs[j], number), missing);
+    }
+    states[j] = outcome.failed > failed ? JobState::failed : JobState::ended;
     write_report(shared.report, outcome, j + 1 == jobs.size() && !is_interrupted());
   }
 }
@@ -338,13 +351,15 @@ void run_one_by_one(const std::vector<BatchJob>& jobs,
 int run_batch(const WarpArguments& shared, const CLI::App& defaults) {
   const InterruptFlag interrupts_set_a_flag;
   const std::vector<BatchJob> jobs = read_batch(shared.batch, defaults);
-  check_collisions(jobs, shared);
+  const std::vector<JobFiles> files = files_of_jobs(jobs);
+  check_collisions(jobs, files, shared);
+  const std::vector<std::vector<Wait>> waits = waits_of_jobs(files);
   Outcome outcome;
   if (shared.jobs > 1 && !shared.dry_run) {
-    SideBySide(jobs, shared, outcome).run();
+    SideBySide(jobs, waits, shared, outcome).run();
     write_report(shared.report, outcome, !is_interrupted());
   } else {
-    run_one_by_one(jobs, shared, outcome);
+    run_one_by_one(jobs, waits, shared, outcome);
   }
   if (!shared.quiet) {
     fmt::print("{} done, {} failed, {} skipped\n", outcome.done, outcome.failed, outcome.skipped);

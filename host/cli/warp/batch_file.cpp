@@ -30,6 +30,10 @@ const Words batch_options{"help", "batch", "jobs", "quiet"};
 /// Options whose values are names of arrays, which may hold commas.
 const Words name_options{"array", "vectors", "tensors"};
 
+/// Options that take several values.
+const Words list_options{"array", "vectors", "tensors", "outputs", "no-skip",  "steps",
+                         "roi",   "dims",    "origin",  "spacing", "direction"};
+
 bool is_one_of(const std::string& word, const Words& words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -129,6 +133,14 @@ class JobReader {
   std::string refusal(const CLI::Option& option, const Json& job, bool is_by_transform) const {
     const std::string& name = option.get_lnames().front();
     if (!job.is_object()) return {};
+    if (is_by_transform && name == "axes") {
+      const std::vector<std::string> files = located_names(job, deformation_key(job));
+      const auto exists = [](const std::string& file) {
+        std::error_code error;
+        return fs::exists(file, error);
+      };
+      return std::ranges::all_of(files, exists) && !files.empty() ? axes_refusal(files.back()) : "";
+    }
     if (is_by_transform && name != "fsl") {
       const bool has_provenance = job.contains("provenance")
                                       ? job["provenance"] == true
@@ -201,6 +213,10 @@ class JobReader {
       return value.get<bool>() ? Words{"--" + key} : Words{};
     }
     Words texts = key == "output" ? file_names(key, value) : value_texts(key, value);
+    if (texts.size() > 1 && !is_one_of(key, list_options)) {
+      throw std::invalid_argument(
+          fmt::format("'{}' holds a list of {}, expected one value", key, texts.size()));
+    }
     const bool is_path = key == "output" || key == "report" || key == "rest" || key == "like" ||
                          (key == "grid" && !is_one_of(texts.front(), {"same", "bounds"}));
     if (is_path) texts.front() = located(texts.front());

@@ -11,29 +11,21 @@
 #include "io/files/extension.hpp"
 #include "io/files/numbered_files.hpp"
 #include "io/files/text_file.hpp"
+#include "io/scene/scene_json.hpp"
 
 namespace tetwarp::cli {
 namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using Row = std::vector<std::string>;
 
-/// "line L, column C" of a byte offset, both from 1.
-std::string position_text(const std::string& text, std::size_t offset) {
-  const std::string before = text.substr(0, offset == 0 ? 0 : offset - 1);
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t line_start =
-      before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1;
-  return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
-}
+/// One row of CSV.
+struct Row {
+  std::vector<std::string> cells;
+  std::ptrdiff_t line;  ///< where it begins, from 1
+};
 
 std::vector<Json> json_jobs(const std::string& path, const std::string& text) {
-  Json batch;
-  try {
-    batch = Json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    throw IoError(path, position_text(text, error.byte), "not valid JSON; correct it");
-  }
+  const Json batch = parse_json(text, path);
   if (!batch.is_object() || batch.size() != 1 || !batch.contains("jobs") ||
       !batch["jobs"].is_array() || batch["jobs"].empty()) {
     throw IoError(path, "", "expected {\"jobs\": [...]} with one job or more and no other key");
@@ -45,14 +37,17 @@ std::vector<Json> json_jobs(const std::string& path, const std::string& text) {
 /// breaks. Rows without a letter are left out.
 std::vector<Row> csv_rows(const std::string& path, const std::string& text) {
   std::vector<Row> rows;
-  Row row(1);
+  std::vector<std::string> row(1);
+  std::ptrdiff_t line = 1, lines = 1;  // of the row, so far
   bool is_quoted = false;
   const auto end_row = [&] {
-    if (row.size() > 1 || !row[0].empty()) rows.push_back(row);
-    row = Row(1);
+    if (row.size() > 1 || !row[0].empty()) rows.push_back({row, line});
+    row.assign(1, "");
+    line = lines;
   };
   for (std::size_t at = text.starts_with("\xef\xbb\xbf") ? 3 : 0; at < text.size(); ++at) {
     const char letter = text[at];
+    if (letter == '\n') ++lines;
     if (is_quoted && letter == '"' && at + 1 < text.size() && text[at + 1] == '"') {
       row.back() += letter;
       ++at;
@@ -68,7 +63,10 @@ std::vector<Row> csv_rows(const std::string& path, const std::string& text) {
       row.back() += letter;
     }
   }
-  if (is_quoted) throw IoError(path, "", "has a quote without an end; write \"\" for a quote");
+  if (is_quoted) {
+    throw IoError(path, fmt::format("line {}", line),
+                  "has a quote without an end; write \"\" for a quote");
+  }
   end_row();
   return rows;
 }
@@ -97,17 +95,29 @@ std::vector<Json> csv_jobs(const std::string& path, const std::string& text) {
   if (rows.size() < 2) {
     throw IoError(path, "", "expected a row of keys such as volume,mesh,output, and rows of jobs");
   }
+  std::vector<std::string> keys;
+  for (const std::string& cell : rows[0].cells) {
+    const std::string key = trimmed(cell);
+    if (std::ranges::find(keys, key) != keys.end()) {
+      throw IoError(path, fmt::format("line {}", rows[0].line),
+                    fmt::format("names the key '{}' twice; remove one column{}", key,
+                                key == "volume" ? ", or write volumes with ';' between them" : ""));
+    }
+    keys.push_back(key);
+  }
   std::vector<Json> jobs;
   for (std::size_t r = 1; r < rows.size(); ++r) {
-    if (rows[r].size() != rows[0].size()) {
-      throw IoError(
-          path, fmt::format("row {}", r + 1),
-          fmt::format("has {} cells, the row of keys has {}", rows[r].size(), rows[0].size()));
+    const std::vector<std::string>& cells = rows[r].cells;
+    if (cells.size() != keys.size()) {
+      throw IoError(path, fmt::format("line {}", rows[r].line),
+                    fmt::format("has {} cells, the row of keys has {}; write an empty cell for a "
+                                "key that is not set",
+                                cells.size(), keys.size()));
     }
     Json& job = jobs.emplace_back(Json::object());
-    for (std::size_t c = 0; c < rows[r].size(); ++c) {
-      const std::string key = trimmed(rows[0][c]), cell = trimmed(rows[r][c]);
-      if (!cell.empty()) job[key] = cell_value(key, cell);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const std::string cell = trimmed(cells[c]);
+      if (!cell.empty()) job[keys[c]] = cell_value(keys[c], cell);
     }
   }
   return jobs;

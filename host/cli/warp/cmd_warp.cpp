@@ -29,15 +29,15 @@ int run_warp(WarpArguments arguments) {
     if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
     return 0;
   }
+  if (arguments.warp.count_folded && arguments.report.empty()) {
+    throw std::invalid_argument("--count-folded needs --report, which it adds to; add it");
+  }
   Ranks ranks = Ranks::start();
   const int devices = ranks.count() > 1 ? device_count() : 0;
   if (devices > 1) arguments.warp.device = launched_local_rank() % devices;
   const JobResult result =
       run_warp_job(arguments, {.shows_progress = !arguments.quiet, .ranks = &ranks});
-  if (!arguments.quiet && ranks.is_root()) {
-    fmt::print(stderr, "{}", storing_note(result.report));
-    fmt::print("{}", summary(result));
-  }
+  if (!arguments.quiet && ranks.is_root()) fmt::print("{}", summary(result));
   if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
   ranks.finish();
   return 0;
@@ -63,6 +63,7 @@ void add_warp_command(CLI::App& app, Run& run) {
   command->callback([arguments, command, &run] {
     arguments->given = given_options(*command);
     check_complete(*arguments);
+    check_device(*command, arguments->warp.backend);
     if (!arguments->batch.empty() && launched_count() > 1) {
       throw CLI::ValidationError("--batch", "runs without mpirun; start one mpirun for each job");
     }

@@ -8,21 +8,36 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <sstream>
 #include <stdexcept>
 
 #include "host/cli/common/declare.hpp"
 
 namespace tetwarp::cli {
 namespace {
-/// The last line of a text, without "tetwarp: ".
-std::string last_line(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  text.erase(0, text.rfind('\n') + 1);
+/// The lines of a text, without "tetwarp: ".
+std::vector<std::string> lines_of(const std::string& text) {
   const std::string name = "tetwarp: ";
-  return one_line(text.starts_with(name) ? text.substr(name.size()) : text);
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(one_line(line.starts_with(name) ? line.substr(name.size()) : line));
+  }
+  return lines;
+}
+
+/// A pipe whose first end is read without waiting.
+std::array<int, 2> pipe_to_read() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    throw std::runtime_error(fmt::format("no pipe to a process: {}", std::strerror(errno)));
+  }
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  return ends;
 }
 }  // namespace
 
@@ -32,23 +47,22 @@ JobProcess::JobProcess(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (std::string& word : all) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) {
-    throw std::runtime_error(fmt::format("no pipe to a process: {}", std::strerror(errno)));
-  }
-  errors_ = ends[0];
-  fcntl(errors_, F_SETFL, O_NONBLOCK);
+  const std::array<int, 2> output = pipe_to_read(), errors = pipe_to_read();
+  output_.end = output[0];
+  errors_.end = errors[0];
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, ends[1], STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&files, output[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, errors[1], STDERR_FILENO);
   const int error =
       posix_spawn(&process_, "/proc/self/exe", &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
-  close(ends[1]);
+  close(output[1]);
+  close(errors[1]);
   if (error == 0) return;
-  close(errors_);
+  close(output_.end);
+  close(errors_.end);
   throw std::runtime_error(fmt::format("a process cannot be started: {}", std::strerror(error)));
 }
 
@@ -58,29 +72,36 @@ JobProcess::~JobProcess() {
     while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
-  close(errors_);
+  close(output_.end);
+  close(errors_.end);
 }
 
 void JobProcess::interrupt() const {
   if (process_ > 0) kill(process_, SIGTERM);
 }
 
-void JobProcess::read_errors() {
+void JobProcess::Stream::read_some() {
   char some[4096];
-  for (ssize_t got = read(errors_, some, sizeof some); got > 0;
-       got = read(errors_, some, sizeof some)) {
-    text_.append(some, static_cast<std::size_t>(got));
+  for (ssize_t got = read(end, some, sizeof some); got > 0; got = read(end, some, sizeof some)) {
+    text.append(some, static_cast<std::size_t>(got));
   }
+}
+
+void JobProcess::read_streams() {
+  output_.read_some();
+  errors_.read_some();
 }
 
 bool JobProcess::has_ended() {
   if (process_ <= 0) return true;
-  read_errors();
+  read_streams();
   int status = 0;
   const pid_t ended = waitpid(process_, &status, WNOHANG);
   if (ended == 0 || (ended < 0 && errno == EINTR)) return false;
   process_ = -1;
-  read_errors();
+  read_streams();
+  end_.printed = lines_of(output_.text);
+  end_.notes = lines_of(errors_.text);
   if (WIFSIGNALED(status)) {
     end_.exit_code = 128 + WTERMSIG(status);
     end_.problem =
@@ -88,7 +109,9 @@ bool JobProcess::has_ended() {
                     WTERMSIG(status) == SIGKILL ? "; the machine may lack memory" : "");
   } else {
     end_.exit_code = WEXITSTATUS(status);
-    if (end_.exit_code != 0) end_.problem = last_line(text_);
+    if (end_.exit_code == 0 || end_.notes.empty()) return true;
+    end_.problem = end_.notes.back();
+    end_.notes.pop_back();
   }
   return true;
 }

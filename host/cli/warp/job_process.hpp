@@ -12,9 +12,11 @@ namespace tetwarp::cli {
 struct ProcessEnd {
   int exit_code = 0;    ///< of a process that a signal has ended 128 and its number
   std::string problem;  ///< its last line on standard error, or the signal; empty after exit code 0
+  std::vector<std::string> notes;    ///< the other lines there, without "tetwarp: "
+  std::vector<std::string> printed;  ///< lines on standard output
 };
 
-/// This program, started with other words. Its standard output is dropped.
+/// This program, started with other words.
 class JobProcess {
  public:
   /// @param words  without the name of the program
@@ -33,11 +35,18 @@ class JobProcess {
   void interrupt() const;  ///< sends it SIGTERM
 
  private:
-  void read_errors();
+  /// What a process prints, read without waiting.
+  struct Stream {
+    int end = -1;
+    std::string text;
+    void read_some();
+  };
+
+  void read_streams();
 
   pid_t process_ = -1;
-  int errors_ = -1;  ///< its standard error, read without waiting
-  std::string text_;
+  Stream output_;
+  Stream errors_;
   ProcessEnd end_;
 };
 

@@ -46,6 +46,8 @@ void check_options(const WarpArguments& arguments) {
   if (arguments.files.size() != 2) {
     throw std::invalid_argument("a transform resamples one image at a time; " + order);
   }
+  const std::string axes = arguments.axes ? axes_refusal(arguments.files.back()) : "";
+  if (!axes.empty()) throw std::invalid_argument(axes);
 }
 
 bool is_given(const WarpArguments& arguments, const std::string& option) {
@@ -99,14 +101,27 @@ TransformSource checked_source(const WarpArguments& arguments) {
   return open_source(arguments);
 }
 
-/// What the source loses.
-Warnings notes_of(const std::string& path, const VolumeHeader& header) {
-  Warnings notes;
-  for (const std::string& note : header.notes) notes.push_back(path + ": " + note);
-  std::vector<std::string> lost = header.not_read;
-  lost.insert(lost.end(), header.left_out.begin(), header.left_out.end());
-  if (!lost.empty()) notes.push_back(path + ": left out: " + listed(lost));
-  return notes;
+/// What the source and the output lose, as of a warp by a mesh.
+void add_losses(const WarpArguments& arguments,
+                const TransformSource& source,
+                const Grid& grid,
+                const JobContext& context,
+                JobResult& result) {
+  const std::string& path = arguments.files.front();
+  Warnings warnings = volume_warnings(path, source.header, MeshHeader{}, arguments);
+  append(warnings, array_warnings(path, source.arrays, arguments));
+  if (source.is_series) {
+    const std::string warning = times_warning(arguments.output, source.header.times);
+    if (!warning.empty()) warnings.push_back(warning);
+  }
+  if (arguments.strict) refuse_warnings(warnings);
+  add_warnings(warnings, context, result);
+  VolumeReadOptions as_stored = source.read;
+  as_stored.are_labels = false;
+  Warnings notes = volume_notes(path, source.header, arguments);
+  append(notes, label_notes(path, read_volume_header(path, as_stored), source.arrays));
+  append(notes, slice_notes(arguments.output, grid, source.arrays));
+  add_notes(notes, context, result);
 }
 
 /// Resamples all steps, or plans them with --dry-run.
@@ -115,15 +130,10 @@ void resample_source(const WarpArguments& arguments,
                      const ResampleOptions& options,
                      const JobContext& context,
                      JobResult& result) {
-  const std::string& path = arguments.files.front();
   const Grid& grid = *options.output_grid;
   TransformRun run(arguments, source, options);
   if (arguments.dry_run) return run.plan(result);
   run.run(context, result);
-  for (const std::string& note : notes_of(path, source.header)) {
-    if (context.shows_progress) fmt::print(stderr, "tetwarp: {}\n", one_line(note));
-    result.warnings.push_back(note);
-  }
   result.steps = fmt::format(
       "{} x {} x {} voxels{} by {}", grid.dims[0], grid.dims[1], grid.dims[2],
       source.is_series ? fmt::format(", {} steps", source.steps.size()) : "", run.convention());
@@ -137,7 +147,7 @@ std::string transform_refusal(const std::string& option,
       "output",     "array",    "source-step", "axes",       "fsl",     "grid",      "like",
       "dims",       "origin",   "spacing",     "direction",  "filter",  "overshoot", "outside",
       "background", "compress", "threads",     "quiet",      "backend", "series",    "like-series",
-      "label-rule", "report",   "dry-run",     "provenance", "resume",  "memory"};
+      "label-rule", "report",   "dry-run",     "provenance", "resume",  "memory",    "strict"};
   const std::string value = values.empty() ? "" : values.front();
   const std::string for_meshes = "--" + option + " " + value + " is for warps by a mesh; ";
   if (!known.contains(option)) return "--" + option + " is for warps by a mesh; leave it out";
@@ -157,6 +167,15 @@ std::string transform_refusal(const std::string& option,
     return for_meshes + "use linear or gaussian";
   }
   return {};
+}
+
+std::string axes_refusal(const std::string& transform) {
+  const FileKind kind = kind_of(transform);
+  if (kind == FileKind::nifti || kind == FileKind::image) return {};
+  return transform +
+         (kind == FileKind::volume ? ": is a VTKHDF field, which is not turned"
+                                   : ": is a transform of ITK, which is along LPS axes") +
+         "; leave out --axes";
 }
 
 bool names_transform(const WarpArguments& arguments) {
@@ -180,26 +199,27 @@ JobResult run_transform_job(const WarpArguments& arguments, const JobContext& co
   ResampleOptions options = resample_options(arguments);
   options.output_grid = resolve_grid(arguments.grid, source.header.grid, source.world, Mesh{}, {});
   const std::vector<std::string> files = files_of_output(arguments.output, source.arrays);
-  std::vector<std::string> inputs = arguments.files;
-  if (arguments.grid.base != "same") inputs.push_back(arguments.grid.base);
-  check_output_files(files_to_write(arguments, files), inputs);
+  check_output_files(files_to_write(arguments, files), arguments.inputs());
+  check_compress({arguments.output}, arguments.compress);
+  check_output_arrays(arguments.output, *options.output_grid, source.arrays,
+                      {.compress = arguments.compress}, source.is_series);
   JobResult result;
   result.outputs = {arguments.output};
   result.report.version = TETWARP_VERSION;
   result.report.backend = Backend::cpu;
   result.report.backend_reason = "transforms run on cpu";
   result.report.threads = thread_count(arguments.warp.threads);
+  add_losses(arguments, source, *options.output_grid, context, result);
+  const InputFacts inputs = input_facts(arguments);
   const bool keeps = arguments.resume && !arguments.dry_run &&
-                     provenance_state(arguments, files) == ProvenanceState::agrees;
+                     provenance_state(arguments, inputs, files) == ProvenanceState::agrees;
   if (keeps) {
     result.skipped = 1;
   } else {
     resample_source(arguments, source, options, context, result);
   }
   result.report.timings.total = watch.seconds();
-  if (arguments.provenance && !keeps && !arguments.dry_run) {
-    write_provenance(arguments, files, result);
-  }
+  if (!keeps) write_provenance(arguments, inputs, files, result);
   if (!arguments.report.empty()) {
     write_finished_file(arguments.report, report_json(result) + "\n");
   }

@@ -12,6 +12,10 @@ namespace tetwarp::cli {
 /// True when the last file is a transform.
 bool names_transform(const WarpArguments& arguments);
 
+/// Why --axes says nothing about a transform, with a remedy; empty: it is an image of a field,
+/// whose axes it may state.
+std::string axes_refusal(const std::string& transform);
+
 /// Why run_transform_job() refuses an option with its values, with a remedy; empty: it does not.
 /// @param option          its long name without dashes
 /// @param has_provenance  --provenance is given, too

@@ -44,12 +44,8 @@ TransformReadOptions read_options(const WarpArguments& arguments, const Transfor
   const bool says_steps = std::ranges::any_of(
       arguments.given, [](const auto& option) { return option.first == "steps"; });
   if (!says_steps) return options;
-  std::vector<std::int64_t> steps;
-  try {
-    steps = arguments.steps.of(transform_step_count(path, options));
-  } catch (const std::invalid_argument& error) {
-    throw IoError(path, "", error.what());
-  }
+  const std::vector<std::int64_t> steps =
+      arguments.steps.of(transform_step_count(path, options), path);
   if (steps.size() > 1) {
     throw IoError(path, "",
                   fmt::format("--steps chooses {} steps of the field; a warp is by one, such as "

@@ -76,9 +76,12 @@ std::string steps_text(const WarpArguments& arguments, const JobPlan& plan) {
 
 /// Whether all outputs stay as they are, by the files of --provenance beside them. Where one of
 /// these contradicts, --resume is turned off: the job is computed again.
-bool keeps_outputs(const JobPlan& plan, WarpArguments& arguments, JobResult& result) {
+bool keeps_outputs(const JobPlan& plan,
+                   const InputFacts& inputs,
+                   WarpArguments& arguments,
+                   JobResult& result) {
   if (!arguments.resume || !arguments.provenance || arguments.dry_run) return false;
-  const ProvenanceState state = provenance_state(arguments, plan.outputs());
+  const ProvenanceState state = provenance_state(arguments, inputs, plan.outputs());
   arguments.resume = state != ProvenanceState::contradicts;
   if (state != ProvenanceState::agrees) return false;
   for (const VolumePlan& volume : plan.volumes) result.skipped += std::ssize(volume.outputs);
@@ -97,18 +100,6 @@ void with_mesh_named(const std::string& mesh, const Function& function) {
   }
 }
 
-/// Adds warnings to the result of the root, and prints them.
-void add_warnings(const Warnings& warnings,
-                  const JobContext& context,
-                  bool is_root,
-                  JobResult& result) {
-  if (!is_root) return;
-  if (context.shows_progress) {
-    print_warnings(warnings, context.label == "warp" ? "" : context.label);
-  }
-  result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
-}
-
 /// What is known before anything is computed.
 JobResult planned_result(const WarpArguments& arguments, const JobPlan& plan) {
   JobResult result;
@@ -118,6 +109,40 @@ JobResult planned_result(const WarpArguments& arguments, const JobPlan& plan) {
   result.report.backend = plan.backend;
   result.report.backend_reason = plan.backend_reason;
   return result;
+}
+
+/// By how much rounding and clipping changed the total of a warp with Intensity::conservative to
+/// integers, for the step and component where that is most. Empty if no total has changed.
+Warnings storing_notes(const Report& report) {
+  const StepReport* most = nullptr;
+  std::size_t component = 0;
+  double largest = 0;
+  std::size_t totals = 0;
+  for (const StepReport& step : report.steps) {
+    for (std::size_t c = 0; c < step.totals.rounding.size(); ++c) {
+      ++totals;
+      const double change = std::abs(step.totals.relative_change(c));
+      if (most != nullptr && !(change > largest)) continue;
+      most = &step;
+      component = c;
+      largest = change;
+    }
+  }
+  if (most == nullptr) return {};
+  const Totals& total = most->totals;
+  const double rounding = total.rounding[component], clipping = total.clipping[component];
+  if (rounding == 0 && clipping == 0) return {};
+  const std::string where =
+      totals == 1 ? "" : fmt::format(" (step {}, component {})", most->step, component);
+  std::string text = fmt::format(
+      "conservative{}: rounding to integers changed the total by {:+.3g}, clipping by "
+      "{:+.3g}, together {:+.2g} of it",
+      where, rounding, clipping, total.relative_change(component));
+  if (report.counts.values_clipped > 0) {
+    text += fmt::format("; {} values beyond the limits of the pixel type, use float32 to keep them",
+                        report.counts.values_clipped);
+  }
+  return {text};
 }
 
 /// Computes all volumes, or plans them with --dry-run.
@@ -159,11 +184,12 @@ JobResult run_warp_job(const WarpArguments& given, const JobContext& context) {
   WarpArguments arguments = given;
   if (arguments.strict) refuse_warnings(plan.warnings);
   JobResult result = planned_result(arguments, plan);
-  add_warnings(plan.warnings, context, ranks.is_root(), result);
-  if (context.shows_progress && ranks.is_root()) {
-    for (const std::string& note : plan.notes) fmt::print(stderr, "tetwarp: {}\n", one_line(note));
+  if (ranks.is_root()) {
+    add_warnings(plan.warnings, context, result);
+    add_notes(plan.notes, context, result);
   }
-  if (ranks.count() == 1 && keeps_outputs(plan, arguments, result)) {
+  const InputFacts inputs = ranks.is_root() ? input_facts(arguments) : InputFacts{};
+  if (ranks.count() == 1 && keeps_outputs(plan, inputs, arguments, result)) {
     result.report.timings.total = watch.seconds();
     write_job_report(arguments, result);
     return result;
@@ -176,14 +202,13 @@ JobResult run_warp_job(const WarpArguments& given, const JobContext& context) {
   }
   run_volumes(arguments, plan, context, ranks, result);
   gather_results(ranks, result);
-  add_warnings(step_warnings(arguments.mesh_file(), std::ssize(plan.mesh.header().times),
-                             result.report.steps),
-               context, ranks.is_root(), result);
   result.report.timings.total = watch.seconds();
   if (!ranks.is_root()) return result;
-  if (arguments.provenance && !arguments.dry_run) {
-    write_provenance(arguments, plan.outputs(), result);
-  }
+  add_warnings(step_warnings(arguments.mesh_file(), std::ssize(plan.mesh.header().times),
+                             result.report.steps),
+               context, result);
+  add_notes(storing_notes(result.report), context, result);
+  write_provenance(arguments, inputs, plan.outputs(), result);
   write_job_report(arguments, result);
   return result;
 }
@@ -194,6 +219,7 @@ std::string report_json(const JobResult& result) {
   json["outputs"] = result.outputs;
   json["outputs_skipped"] = result.skipped;
   json["warnings"] = result.warnings;
+  json["notes"] = result.notes;
   for (const StepPlan& plan : result.plans) {
     json["plans"].push_back({{"volume", plan.volume},
                              {"step", plan.step},
@@ -206,38 +232,6 @@ std::string report_json(const JobResult& result) {
                              {"disk", plan.disk}});
   }
   return json_text(json, 2);
-}
-
-std::string storing_note(const Report& report) {
-  const StepReport* most = nullptr;
-  std::size_t component = 0;
-  double largest = 0;
-  std::size_t totals = 0;
-  for (const StepReport& step : report.steps) {
-    for (std::size_t c = 0; c < step.totals.rounding.size(); ++c) {
-      ++totals;
-      const double change = std::abs(step.totals.relative_change(c));
-      if (most != nullptr && !(change > largest)) continue;
-      most = &step;
-      component = c;
-      largest = change;
-    }
-  }
-  if (most == nullptr) return {};
-  const Totals& total = most->totals;
-  const double rounding = total.rounding[component], clipping = total.clipping[component];
-  if (rounding == 0 && clipping == 0) return {};
-  const std::string where =
-      totals == 1 ? "" : fmt::format(" (step {}, component {})", most->step, component);
-  std::string text = fmt::format(
-      "tetwarp: conservative{}: rounding to integers changed the total by {:+.3g}, clipping by "
-      "{:+.3g}, together {:+.2g} of it",
-      where, rounding, clipping, total.relative_change(component));
-  if (report.counts.values_clipped > 0) {
-    text += fmt::format("; {} values beyond the limits of the pixel type, use float32 to keep them",
-                        report.counts.values_clipped);
-  }
-  return text + "\n";
 }
 
 std::string summary(const JobResult& result) {

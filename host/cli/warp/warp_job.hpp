@@ -19,16 +19,11 @@ namespace tetwarp::cli {
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context);
 
 /// The report as JSON, with the fields of the command: "status", "outputs", "outputs_skipped",
-/// "warnings".
+/// "warnings", "notes".
 std::string report_json(const JobResult& result);
 
 /// A line to print: outputs, covered voxels, seconds, back end and file names. After --dry-run the
 /// plan of each output.
 std::string summary(const JobResult& result);
-
-/// One line to print on standard error after a warp with Intensity::conservative to integers: by
-/// how much rounding and clipping changed the total, for the step and component where that is most.
-/// Empty if no total has changed.
-std::string storing_note(const Report& report);
 
 }  // namespace tetwarp::cli
