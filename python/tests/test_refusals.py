@@ -36,7 +36,8 @@ class Odd:
 
 ARRAYS = [None, 5, "text", Odd(), {}, {1}, [], [[1, 2], [3]], np.zeros((4, 4, 4), complex),
           np.array(["1"]), np.zeros(3, "M8[s]"), np.ma.masked_less(np.ones((5, 5, 5)), 2)]
-NUMBERS = ["3", b"1", Odd(), {}, [1.0], 1j, np.complex128(1j), np.ones(2), 10**400]
+ARRAYS += [list(ARRAYS[-1]), [ARRAYS[-1].tolist(), ARRAYS[-1]], tuple(ARRAYS[-1])]
+NUMBERS = [np.ma.masked, np.ma.array(0.5, mask=True), np.ma.array(3, mask=True), np.ones((9, 9)), "3", b"1", Odd(), {}, [1.0], 1j, np.complex128(1j), np.ones(2), 10**400]
 WORDS = [3, None, Odd(), b"linear", "linear\0", "\udcff"]
 #: What none of a kind is.
 BAD = {
@@ -53,6 +54,9 @@ BAD = {
     "word": WORDS,
     "path": [3, None, Odd(), "", "a\0b", "\udcff"],
     "callback": [3, "text", [print]],
+    "flag": ["no", "False", 0, 1, None, 1.0, [], [True], Odd(), np.array([1, 2])],
+    "folder": [0, False, 0.0, [], {}, b"", (), np.array([]), np.array(0), Odd(), "a\0b", "\udcff"],
+    "masked": [a for a in ARRAYS if not isinstance(a, (int, type(None), str))][-4:],
 }
 BAD["rows"] = [a for a in ARRAYS if not isinstance(a, list)] + [np.ones((1, 4)), -np.ones((1, 3), int)]
 #: Name, call, arguments that are good, and kinds of arguments.
@@ -61,11 +65,13 @@ CALLS = {
         volume="samples", rest="points", cells="cells", deformed="points", spacing="vector",
         origin="vector", direction="matrix", affine="matrix", default_value="number",
         falloff="number", device="integer", threads="integer", interpolator="word",
-        label_rule="word", outside="word", overshoot="word", intensity="word", backend="word",
+        label_rule="word", antialias="flag", outside="word", overshoot="word", intensity="word", backend="word",
         progress="callback")),
     "operator": (tetwarp.WarpOperator, dict(source=SAMPLES, **MESH), dict(
         rest="points", cells="cells", deformed="points", interpolator="word", outside="word",
-        intensity="word", threads="integer")),
+        intensity="word", threads="integer", mask="masked")),
+    "matvec": (OPERATOR.matvec, {}, dict(x="masked")),
+    "rmatvec": (OPERATOR.rmatvec, {}, dict(y="masked")),
     "forward": (OPERATOR.forward, {}, dict(x="samples")),
     "adjoint": (OPERATOR.adjoint, {}, dict(y="samples")),
     "node_gradient": (OPERATOR.node_gradient, dict(x=SAMPLES, y=SAMPLES),
@@ -76,9 +82,10 @@ CALLS = {
                   dict(points="points", cells="cells")),
     "transform_points": (tetwarp.transform_points, dict(points=REST, **MESH), dict(
         points="where", rest="points", cells="cells", deformed="points",
-        default_value="number")),
+        default_value="number", inverse="flag", return_owners="flag")),
     "lattice_mesh": (tetwarp.lattice_mesh, dict(volume=SAMPLES),
-                     dict(volume="samples", cells="integer", threshold="number")),
+                     dict(volume="samples", cells="integer", threshold="number",
+                          hexahedra="flag")),
     "deform": (tetwarp.deform, dict(points=REST, cells=CELLS), dict(
         points="points", cells="cells", kind="word", axis="word", amount="number", time="number",
         seed="integer", offset="vector")),
@@ -91,7 +98,8 @@ CALLS = {
     "Grid": (tetwarp.Grid, dict(shape=(4, 5, 6)), dict(
         shape="shape", spacing="vector", origin="vector", direction="matrix")),
     "certify": (_certify, {}, dict(start="points", end="points", triangles="rows",
-                                   most_intervals="integer", threads="integer")),
+                                   most_intervals="integer", threads="integer",
+                                   self_intersections="flag")),
     "solve_contacts": (
         tetwarp.solve_contacts,
         dict(delassus=np.eye(3), free_velocity=[-1.0, 2, 0], friction=[0.5]),
@@ -106,7 +114,9 @@ CALLS = {
     "begin_step": (_begin_step, {}, dict(keys="rows", point_a="points", point_b="points",
                                          normal="points", time_step="number")),
     "Simulator": (tetwarp.Simulator, dict(scene=tetwarp.shipped_scene("top")), dict(
-        backend="word", device="integer", threads="integer", max_step_seconds="number")),
+        folder="folder", backend="word", device="integer", threads="integer", untangle="flag",
+        max_step_seconds="number")),
+    "Simulator of a file": (tetwarp.Simulator, dict(scene="none.json"), dict(folder="folder")),
     "step": (_simulator("step"), {}, dict(count="integer", progress="callback")),
     "add_handle": (_simulator("add_handle"),
                    dict(name="h", body=0, center=(0, 0, 0), stiffness=1.0),
@@ -114,7 +124,7 @@ CALLS = {
                         damping="number")),
     "shipped_scene": (tetwarp.shipped_scene, {}, dict(name="word")),
     "read": (tetwarp.read, dict(path="none.nii"), dict(path="path", axes="word", step="integer",
-                                                          ten_nodes="word")),
+                                                          ten_nodes="word", labels="flag")),
     "write": (tetwarp.write, dict(path="a.nii", value=SAMPLES, grid=tetwarp.Grid((5, 5, 5))),
               dict(path="path", compress="integer")),
 }

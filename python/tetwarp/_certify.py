@@ -8,7 +8,8 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import integer_of, list_of, points_of, triangles_of
+from ._arrays import points_of, triangles_of
+from ._values import flag_of, integer_of, list_of
 
 
 @dataclass(eq=False)
@@ -85,7 +86,7 @@ def certify(
         ends.append(points_of(surface[1], f"{name}: end", len(starts[-1])))
         triangles.append(triangles_of(surface[2], f"{name}: triangles", len(starts[-1])))
     found = _core.certify(
-        starts, ends, triangles, self=bool(self_intersections),
+        starts, ends, triangles, self=flag_of(self_intersections, "self_intersections"),
         most_intervals=integer_of(most_intervals, "most_intervals", 2**63 - 1),
         threads=integer_of(threads, "threads"),
     )

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import curved_cells_of, integer_of, nodes_of, number_of, vector_of, word_of
+from ._arrays import curved_cells_of, nodes_of, vector_of
+from ._values import exact_of, flag_of, integer_of, number_of, word_of
 from ._volume import volume_of
 
 Cells = Any  # (m, 4) or (m, 10), (k, 8), or a pair of both
@@ -93,7 +94,7 @@ def lattice_mesh(
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
     made = _core.lattice_mesh(
         source.array, source.grid._core(), integer_of(cells, "cells"),
-        None if threshold is None else number_of(threshold, "threshold"), bool(hexahedra),
+        None if threshold is None else exact_of(threshold, "threshold"), flag_of(hexahedra, "hexahedra"),
     )
     return Mesh(*made)
 
@@ -196,7 +197,7 @@ def isosurface(
     """
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
     about = None if triangles is None else integer_of(triangles, "triangles", 2**63 - 1)
-    made = _core.isosurface(source.array, source.grid._core(), number_of(value, "value"), about)
+    made = _core.isosurface(source.array, source.grid._core(), exact_of(value, "value"), about)
     return Surface(*made)
 
 
