@@ -120,6 +120,9 @@ def displacement_field(
         raise ValueError(f"convention: expected resampling or modeling, got {convention!r}")
     grid = _grid_of(reference, shape, spacing, origin, direction, affine)
     name = _CONVENTIONS[convention]
+    for given in ("outside", "falloff"):
+        if given in options and name == "forward":
+            raise ValueError(f'{given}: is for convention="resampling"')
     return _field(name, f"tetwarp_{name}", grid, rest, cells, deformed, options)
 
 
