@@ -277,3 +277,17 @@ def test_axes_of_meshes_of_vtkhdf_are_refused(mesh, tmp_path):
     for call in (tetwarp.read, tetwarp.MeshFile):
         with pytest.raises(ValueError, match="axes: has no effect on a mesh of VTKHDF"):
             call(tmp_path / "a.vtkhdf", axes="lps")
+
+
+def test_remedies_name_arguments_of_the_package(tmp_path):
+    tetwarp.write(tmp_path / "a.nii", np.zeros((2, 3, 4)), grid=tetwarp.Grid((2, 3, 4)))
+    calls = {
+        'axes="lps" turns': lambda: tetwarp.read(tmp_path / "a.nii", axes="lps"),
+        "steps in files of their own$": lambda: tetwarp.write(
+            tmp_path / "a.vti", [np.zeros((2, 3, 4))] * 2, grid=tetwarp.Grid((2, 3, 4)), times=[0, 1]),
+    }
+
+    for text, call in calls.items():
+        with pytest.raises(tetwarp.IoError, match=text) as caught:
+            call()
+        assert "--" not in str(caught.value)

@@ -217,3 +217,37 @@ def test_lists_of_names_and_times_are_copies(tmp_path):
         simulator.positions(1)
     with pytest.raises(ValueError, match="expected a step from 0 to 0"):
         file.step(1)
+
+
+def test_the_module_compares_samples_with_their_grid(tmp_path):
+    """What the package has checked, the module does not read beyond either."""
+    core = tetwarp._core
+    grid = tetwarp.Grid((4, 5, 6))._core()
+    points, cells = MESH
+    none = np.empty((0, 8), np.int32), np.empty((0, 6), np.int32)
+    options = dict(interpolator="linear", label_rule="linear", label_gaussian=(1, 1), overshoot="keep",
+                   antialias=False, intensity="value", quantities=[], outside="background", falloff=0,
+                   default_value=0, output_grid=None, backend="auto", device=0, threads=1)
+    calls = [
+        lambda samples: core.lattice_mesh(samples, grid, 1, 0.0, False),
+        lambda samples: core.isosurface(samples, grid, 0.5, None),
+        lambda samples: core.Warper([samples], grid, points, cells, *none, **options),
+        lambda samples: core.write_volumes(
+            str(tmp_path / "a.vtkhdf"), grid, [dict(name="a", samples=[samples], nifti=None,
+                                                    is_itk_field=False)], [], 0),
+        lambda samples: core.write_volumes(
+            str(tmp_path / "a.vtkhdf"), grid, [dict(name="a", samples=[good, samples], nifti=None,
+                                                    is_itk_field=False)], [0, 1], 0)]
+    good = np.ones((4, 5, 6), np.float32)
+    good[1, 1, 1] = 0
+
+    for call in calls[:4]:
+        call(good)
+    (tmp_path / "a.vtkhdf").unlink()
+    for shape in ((2, 2, 2), (6, 5, 4), (4, 5), (120,), (4, 5, 6, 1, 1), (4, 5, 7)):
+        for call in calls:
+            with pytest.raises(ValueError, match="samples: expected the shape of the grid"):
+                call(np.ones(shape, np.float32))
+    with pytest.raises(ValueError, match="samples: expected steps of one type"):
+        calls[4](good.astype(float))
+    assert not list(tmp_path.iterdir())

@@ -51,12 +51,12 @@ def warn_of_rounding(number: float, sources: Sequence[Any]) -> None:
     for name in dict.fromkeys(map(type_of, sources)):
         if np.dtype(name).kind in "iu":
             limits = np.iinfo(name)
-            kept = min(max(round(number), limits.min), limits.max)
+            kept: float = min(max(round(number), int(limits.min)), int(limits.max))
+            fits = float(kept) == number
         else:
             with np.errstate(over="ignore"):
                 kept = float(np.float64(number).astype(name))
-        fits = float(kept) == number if isinstance(kept, int) else (
-            np.isfinite(kept) == np.isfinite(number))
+            fits = bool(np.isfinite(kept) == np.isfinite(number))
         if not fits:
             warn(f"default_value: {number:g} does not fit {name}, {kept:g} is stored")
 

@@ -176,7 +176,7 @@ class Warper:
                                ("backend", backend)):
                 word_of(word, name)
             raise with_remedy(renamed(error, _RENAMED)) from None
-        if outside == "background":
+        if background and outside == "background":
             warn_of_rounding(background, self._arrays)
         self._is_source_grid = self._grid == grid
 
