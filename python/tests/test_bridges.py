@@ -164,3 +164,17 @@ def test_several_times_of_nibabel_are_refused(shape):
     if len(shape) == 4:
         one = tetwarp.volume_from(image.slicer[:, :, :, 1:2], axes="RAS")
         assert one.shape == (2, 3, 4)
+
+
+@pytest.mark.parametrize("kind, count", [("tetra", 4), ("tetra10", 10), ("hexahedron", 8)])
+@pytest.mark.parametrize("dtype", ["f8", "?", "c16", "i2", "u8"])
+def test_numbers_of_nodes_are_integers(kind, count, dtype):
+    cells = np.arange(count)[None].astype(dtype)
+    mesh = types.SimpleNamespace(points=np.random.default_rng(2).random((count, 3)),
+                                 cells_dict={kind: cells})
+
+    if cells.dtype.kind in "iu":
+        assert tetwarp.mesh_from(mesh).cells.tolist() == [list(range(count))]
+        return
+    with pytest.raises(ValueError, match="mesh: expected integers"):
+        tetwarp.mesh_from(mesh)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import curved_cells_of, nodes_of
+from ._arrays import curved_cells_of, integers_of, nodes_of
 from ._fields import Field
 from ._grid import Grid, reference_grid
 from ._mesh import Mesh, joined_cells
@@ -146,11 +146,11 @@ def to_sitk_transform(field: Field, *, axes: str) -> Any:
     """
     sitk = package("SimpleITK", "to_sitk_transform", "SimpleITK")
     check_kind(field, Field, "field")
-    if field.values.ndim != 4 or field.values.shape[3] != 3:
-        raise ValueError(f"field: expected displacements, (z, y, x, 3), got {field.values.shape}")
+    values = made_volume("field", field.values, field.grid).array
+    if values.shape[3:] != (3,):
+        raise ValueError(f"field: expected displacements, (z, y, x, 3), got {values.shape}")
     signs = signs_of(axes, "LPS")
-    made_volume("field", field.values, field.grid)
-    image = _sitk_image(sitk, field.values * signs, turned(field.grid, signs))
+    image = _sitk_image(sitk, values * signs, turned(field.grid, signs))
     return sitk.DisplacementFieldTransform(image)
 
 
@@ -231,7 +231,7 @@ def mesh_from(mesh: Any) -> Mesh:
             f"{', '.join(others)}"
         )
     points = nodes_of(mesh.points, "mesh")
-    parts = {name: np.reshape(blocks.get(name, ()), (-1, count)).astype(np.int64)
+    parts = {name: integers_of(blocks.get(name, ()), "mesh", np.int64).reshape(-1, count)
              for name, count in (("tetra", 4), ("tetra10", 10), ("hexahedron", 8))}
     tets, ten = parts["tetra"], parts["tetra10"]
     if len(ten):

@@ -117,6 +117,9 @@ def _rescaled(datasets: list[Any]) -> np.ndarray:
     """Samples with slope and intercept: integers where these are, else float32."""
     slopes = [_number_in(d, "RescaleSlope", 1.0) for d in datasets]
     shifts = [_number_in(d, "RescaleIntercept", 0.0) for d in datasets]
+    if not np.isfinite(slopes + shifts).all() or 0 in slopes:
+        raise ValueError("source: has a rescale slope or intercept that is no finite number, or a "
+                         "slope of 0")
     pixels = [d.pixel_array for d in datasets]
     if all(s == 1 for s in slopes) and all(s.is_integer() for s in shifts):
         wide = np.stack([p.astype(np.int64) + int(s) for p, s in zip(pixels, shifts)])
