@@ -25,6 +25,16 @@ def _begin_step(time_step=0.01, **found):
     return tetwarp.ContactTracker().begin_step({**FOUND, **found}, [UPRIGHT, UPRIGHT], time_step)
 
 
+def _collisions(points=REST, triangles=np.array([(0, 1, 2)]), **options):
+    return tetwarp.find_collisions([(points, triangles)], **options)
+
+
+def _end_step(impulse=np.zeros((1, 3)), velocity=np.zeros((1, 3))):
+    tracker = tetwarp.ContactTracker()
+    tracker.begin_step(FOUND, [UPRIGHT, UPRIGHT], 0.01)
+    return tracker.end_step(impulse, [UPRIGHT, UPRIGHT], velocity=velocity)
+
+
 def _simulator(method):
     simulator = tetwarp.Simulator(tetwarp.shipped_scene("top"), threads=1)
     return getattr(simulator, method)
@@ -59,6 +69,9 @@ BAD = {
     "masked": [a for a in ARRAYS if not isinstance(a, (int, type(None), str))][-4:],
 }
 BAD["rows"] = [a for a in ARRAYS if not isinstance(a, list)] + [np.ones((1, 4)), -np.ones((1, 3), int)]
+BAD["impulses"] = [a for a in ARRAYS if not isinstance(a, list)] + [np.full((1, 3), np.nan), np.zeros((2, 3)), [1, 2, 3]]
+BAD["many cells"] = [a for a in BAD["cells"] if not isinstance(a, int)]
+BAD["body"] = ["none", 5, -1, 0.0, None, b"top", [0], Odd(), np.ma.array(0, mask=True)]
 #: Name, call, arguments that are good, and kinds of arguments.
 CALLS = {
     "warp": (tetwarp.warp, dict(volume=SAMPLES, **MESH), dict(
@@ -78,6 +91,11 @@ CALLS = {
                       dict(x="samples", y="samples")),
     "displacement_field": (tetwarp.displacement_field, dict(**MESH, shape=(5, 5, 5)), dict(
         rest="points", cells="cells", deformed="points", convention="word", spacing="vector")),
+    "strain": (tetwarp.strain, dict(**MESH, shape=(5, 5, 5)), dict(
+        rest="points", cells="cells", deformed="points", shape="shape", origin="vector",
+        direction="matrix", backend="word", device="integer", threads="integer")),
+    "jacobian_determinant": (tetwarp.jacobian_determinant, dict(**MESH, shape=(5, 5, 5)), dict(
+        rest="points", cells="cells", deformed="points", spacing="vector", affine="matrix")),
     "rasterize": (tetwarp.rasterize, dict(points=REST, cells=CELLS, shape=(5, 5, 5)),
                   dict(points="points", cells="cells")),
     "transform_points": (tetwarp.transform_points, dict(points=REST, **MESH), dict(
@@ -122,6 +140,18 @@ CALLS = {
                    dict(name="h", body=0, center=(0, 0, 0), stiffness=1.0),
                    dict(name="word", center="vector", stiffness="number", radius="number",
                         damping="number")),
+    "move_handle": (_simulator("move_handle"), dict(name="h", displacement=(0, 0, 0)),
+                    dict(name="word", displacement="vector")),
+    "move_script": (_simulator("move_script"), dict(name="h", displacement=(0, 0, 0)),
+                    dict(name="word", displacement="vector", axis_angle="vector")),
+    "positions": (_simulator("positions"), {}, dict(body="body")),
+    "find_collisions": (_collisions, {}, dict(points="points", triangles="rows", threads="integer",
+                                              self_intersections="flag")),
+    "split_ten_nodes": (tetwarp.split_ten_nodes, {}, dict(cells="many cells")),
+    "end_step": (_end_step, {}, dict(impulse="impulses", velocity="impulses")),
+    "MeshFile": (tetwarp.MeshFile, dict(path="none.vtu"), dict(
+        path="path", rest_step="integer", axes="word", ten_nodes="word")),
+    "read_header": (tetwarp.read_header, {}, dict(path="path")),
     "shipped_scene": (tetwarp.shipped_scene, {}, dict(name="word")),
     "read": (tetwarp.read, dict(path="none.nii"), dict(path="path", axes="word", step="integer",
                                                           ten_nodes="word", labels="flag")),
@@ -131,7 +161,7 @@ CALLS = {
 
 
 #: Arguments that are not given where they are None.
-OPTIONAL = ("spacing", "origin", "direction", "affine", "impulse_guess")
+OPTIONAL = ("velocity", "spacing", "origin", "direction", "affine", "impulse_guess")
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import points_of, triangles_of
+from ._arrays import nodes_of, points_of, triangles_of
 from ._values import flag_of, integer_of, list_of
 
 
@@ -135,6 +135,7 @@ def find_collisions(
     for number, surface in enumerate(list_of(surfaces, "surfaces", "a list of surfaces")):
         if not isinstance(surface, (tuple, list)) or len(surface) != 2:
             raise ValueError(f"surfaces[{number}]: expected (points, triangles)")
-        still.append((surface[0], surface[0], surface[1]))
+        points = nodes_of(surface[0], f"surfaces[{number}]: points")
+        still.append((points, points, surface[1]))
     found = certify(still, self_intersections=self_intersections, threads=threads)
     return Collisions(found.surfaces, found.triangles)

@@ -91,6 +91,14 @@ def _check_finite_numbers(value: Any, key: str) -> None:
         raise ValueError(f"{key}: expected a finite number, got {value}")
 
 
+def _move_of(value: Any, name: str) -> tuple[float, float, float]:
+    """Three finite numbers."""
+    vector = vector_of(value, name)
+    if not np.isfinite(vector).all():
+        raise ValueError(f"{name}: expected three finite numbers, got {vector}")
+    return vector
+
+
 def shipped_scenes() -> list[str]:
     """Names of the scenes that come with the library.
 
@@ -328,7 +336,7 @@ class Simulator:
 
     def move_handle(self, name: str, displacement: Any) -> None:
         """Moves the anchors of a handle from where they started, instead of its path [m]."""
-        self._simulator.move_handle(word_of(name, "name"), vector_of(displacement, "displacement"))
+        self._simulator.move_handle(word_of(name, "name"), _move_of(displacement, "displacement"))
 
     def release_handle(self, name: str) -> None:
         """The springs of a handle let go, until it is moved again."""
@@ -337,8 +345,8 @@ class Simulator:
     def move_script(self, name: str, displacement: Any, axis_angle: Any = (0, 0, 0)) -> None:
         """The pose of a scripted body or obstacle relative to its start [m, rad]."""
         self._simulator.move_script(
-            word_of(name, "name"), vector_of(displacement, "displacement"),
-            vector_of(axis_angle, "axis_angle"),
+            word_of(name, "name"), _move_of(displacement, "displacement"),
+            _move_of(axis_angle, "axis_angle"),
         )
 
     def checkpoint(self) -> bytes:
