@@ -114,10 +114,12 @@ def check_samples(name: str, shape: tuple[int, ...], dtype: str) -> None:
 
 def samples_of(value: Any, name: str) -> np.ndarray:
     """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
-    if isinstance(value, (str, os.PathLike)):
-        raise ValueError(f"{name}: expected samples, got the name {value!r}; tetwarp.read reads it")
-    if hasattr(value, "dataobj") or hasattr(value, "GetPixelIDTypeAsString"):
-        raise ValueError(f"{name}: expected samples, got an image; tetwarp.volume_from takes it")
+    if type(value) is not np.ndarray:
+        if isinstance(value, (str, os.PathLike)):
+            raise ValueError(
+                f"{name}: expected samples, got the name {value!r}; tetwarp.read reads it")
+        if hasattr(value, "dataobj") or hasattr(value, "GetPixelIDTypeAsString"):
+            raise ValueError(f"{name}: expected samples, got an image; tetwarp.volume_from takes it")
     array = array_of(value, name)
     dtype = array.dtype if array.dtype.isnative else array.dtype.newbyteorder("=")
     is_pixel = dtype in _NATIVE_PIXELS  # whose name takes longer
