@@ -145,7 +145,7 @@ class ThreadPool {
 /// Never destroyed: its threads use it until the process ends. The child of a fork, which has none
 /// of them, and may have its mutex locked for ever, gets a new one.
 ThreadPool* current_pool = new ThreadPool;
-const int renews_in_children =
+[[maybe_unused]] const int renews_in_children =
     pthread_atfork(nullptr, nullptr, [] { current_pool = new ThreadPool; });
 
 ThreadPool& thread_pool() {

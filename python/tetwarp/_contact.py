@@ -39,8 +39,10 @@ class Csr(NamedTuple):
 
 def _is_csr(value: Any) -> bool:
     """Whether it is a tuple of the members of a Csr, not four rows of numbers."""
-    if isinstance(value, Csr) or not (isinstance(value, tuple) and len(value) == 4):
-        return isinstance(value, Csr)
+    if isinstance(value, Csr):
+        return True
+    if not isinstance(value, tuple) or len(value) != 4:
+        return False
     try:
         sizes = {len(part) for part in value}
     except TypeError:  # csr_of() names the member
