@@ -320,3 +320,21 @@ def test_thresholds_see_all_digits_of_64_bit_samples(dtype, shift):
         for wrong in (shift + 1, np.int64(shift + 1)):
             with pytest.raises(ValueError, match="expected a number that float64 holds"):
                 call(shifted, wrong)
+
+
+@pytest.mark.parametrize("kind", ["twist", "bend", "swim", "random", "rotate", "translate"])
+def test_arguments_of_other_deformations_are_refused(kind, mesh):
+    """An argument changes the positions, or is refused."""
+    given = {"amount": 0.5, "axis": "x", "seed": 7, "offset": (1.0, 2, 3)}
+    usual = tetwarp.deform(*mesh, kind=kind)
+    refused = set()
+
+    for name, value in given.items():
+        try:
+            moved = tetwarp.deform(*mesh, kind=kind, **{name: value})
+        except ValueError as error:
+            assert str(error) == f"{name}: has no effect on kind {kind!r}; leave it out"
+            refused.add(name)
+        else:
+            assert not np.array_equal(moved, usual), name
+    assert refused and refused != set(given)
