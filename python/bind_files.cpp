@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -177,7 +178,7 @@ void write_volume_file(const std::string& path,
   });
 }
 
-/// A MeshReader, whose calls are file calls.
+/// A MeshReader, whose calls are file calls; so is its end, which closes the file.
 class MeshFile {
  public:
   MeshFile(const std::string& path,
@@ -185,8 +186,14 @@ class MeshFile {
            const std::string& axes,
            bool keeps_curved)
       : reader_(open(path, rest_step, axes, keeps_curved)) {}
+  ~MeshFile() {
+    const std::lock_guard lock(file_mutex());
+    reader_.reset();
+  }
+  MeshFile(const MeshFile&) = delete;
+  MeshFile& operator=(const MeshFile&) = delete;
 
-  const MeshReader& reader() const { return reader_; }
+  const MeshReader& reader() const { return *reader_; }
 
  private:
   static MeshReader open(const std::string& path,
@@ -200,7 +207,7 @@ class MeshFile {
     return file_call([&] { return MeshReader(path, options); });
   }
 
-  MeshReader reader_;
+  std::optional<MeshReader> reader_;
 };
 
 nb::tuple mesh_arrays(const MeshFile& file) {

@@ -117,6 +117,27 @@ def test_a_fork_warps_on(volume, mesh, twisted):
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 
+def test_files_are_opened_read_and_closed_by_several_threads(mesh, tmp_path):
+    steps = [mesh.points + 0.25 * number for number in range(4)]
+    for number in range(3):
+        tetwarp.write(tmp_path / f"{number}.vtkhdf", mesh, deformed=steps)
+    found = []
+
+    def work(number):
+        for _ in range(40):
+            file = tetwarp.MeshFile(tmp_path / f"{number}.vtkhdf")
+            found.append(all(map(np.array_equal, file, steps)))
+            del file  # closes it while others read
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+    assert found == [True] * 120
+
+
 @pytest.mark.parametrize("work", ["read", "write", "scene", "warp", "points"])
 def test_a_fork_goes_on_while_other_threads_are_in_calls(work, volume, mesh, twisted, tmp_path):
     """Children have none of the threads that held a lock or did a part of a loop."""
