@@ -70,6 +70,9 @@ BAD = {
 }
 BAD["rows"] = [a for a in ARRAYS if not isinstance(a, list)] + [np.ones((1, 4)), -np.ones((1, 3), int)]
 BAD["impulses"] = [a for a in ARRAYS if not isinstance(a, list)] + [np.full((1, 3), np.nan), np.zeros((2, 3)), [1, 2, 3]]
+BAD["out"] = [a for a in ARRAYS if a is not None] + [
+    np.ma.masked_less(SAMPLES, 3), np.ma.masked_less(SAMPLES.astype(float), 3), SAMPLES[1:],
+    SAMPLES.astype(">f4"), np.asfortranarray(SAMPLES), np.asfortranarray(SAMPLES.astype(float))]
 BAD["many cells"] = [a for a in BAD["cells"] if not isinstance(a, int)]
 BAD["body"] = ["none", 5, -1, 0.0, None, b"top", [0], Odd(), np.ma.array(0, mask=True)]
 #: Name, call, arguments that are good, and kinds of arguments.
@@ -78,15 +81,15 @@ CALLS = {
         volume="samples", rest="points", cells="cells", deformed="points", spacing="vector",
         origin="vector", direction="matrix", affine="matrix", default_value="number",
         falloff="number", device="integer", threads="integer", interpolator="word",
-        label_rule="word", antialias="flag", outside="word", overshoot="word", intensity="word", backend="word",
+        out="out", label_rule="word", antialias="flag", outside="word", overshoot="word", intensity="word", backend="word",
         progress="callback")),
     "operator": (tetwarp.WarpOperator, dict(source=SAMPLES, **MESH), dict(
         rest="points", cells="cells", deformed="points", interpolator="word", outside="word",
         intensity="word", threads="integer", mask="masked")),
     "matvec": (OPERATOR.matvec, {}, dict(x="masked")),
     "rmatvec": (OPERATOR.rmatvec, {}, dict(y="masked")),
-    "forward": (OPERATOR.forward, {}, dict(x="samples")),
-    "adjoint": (OPERATOR.adjoint, {}, dict(y="samples")),
+    "forward": (OPERATOR.forward, dict(x=SAMPLES), dict(x="samples", out="out")),
+    "adjoint": (OPERATOR.adjoint, dict(y=SAMPLES), dict(y="samples", out="out")),
     "node_gradient": (OPERATOR.node_gradient, dict(x=SAMPLES, y=SAMPLES),
                       dict(x="samples", y="samples")),
     "displacement_field": (tetwarp.displacement_field, dict(**MESH, shape=(5, 5, 5)), dict(

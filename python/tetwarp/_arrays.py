@@ -333,6 +333,8 @@ def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarra
             value = _core.writable_array(value)
         except (TypeError, BufferError, RuntimeError) as error:
             raise ValueError(f"{name}: cannot be written to by DLPack: {error}") from None
+    if is_masked(value):
+        raise ValueError(f"{name}: has masked elements, which would hide what is written")
     if not isinstance(value, np.ndarray):
         raise ValueError(f"{name}: expected an array of {dtype} to write to, of NumPy or by DLPack")
     if value.shape != shape or value.dtype != dtype:
