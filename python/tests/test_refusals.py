@@ -155,6 +155,7 @@ CALLS = {
     "MeshFile": (tetwarp.MeshFile, dict(path="none.vtu"), dict(
         path="path", rest_step="integer", axes="word", ten_nodes="word")),
     "read_header": (tetwarp.read_header, {}, dict(path="path")),
+    "available_backends": (tetwarp.available_backends, {}, dict(device="integer")),
     "shipped_scene": (tetwarp.shipped_scene, {}, dict(name="word")),
     "read": (tetwarp.read, dict(path="none.nii"), dict(path="path", axes="word", step="integer",
                                                           ten_nodes="word", labels="flag")),
