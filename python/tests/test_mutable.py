@@ -97,6 +97,11 @@ def test_members_of_fields_and_results_are_checked_where_they_are_written(tmp_pa
         result.extras["owner"] = value
         with pytest.raises(ValueError):
             tetwarp.write(path, result)
+    for member, value in {"names": (), "nifti": (), "volumes": (SAMPLES, SAMPLES)}.items():
+        result = tetwarp.warp(tetwarp.Volume(SAMPLES, GRID), *MESH, MESH.points)
+        setattr(result, member, value)
+        with pytest.raises(ValueError, match="value: expected a name and a header"):
+            tetwarp.write(path, result)
     field = tetwarp.strain(*MESH, MESH.points, reference=GRID)
     field.grid = tetwarp.Grid((60, 50, 40))
     with pytest.raises(ValueError, match="value"):

@@ -208,6 +208,10 @@ def _volume_of(value: Any, grid: Grid | None, where: str) -> Volume:
 
 def _volumes_of(result: WarpResult) -> list[Volume]:
     """All arrays of a warp, with the names that the command gives them."""
+    if not len(result.volumes) == len(result.names) == len(result.nifti):
+        raise ValueError(f"value: expected a name and a header of NIfTI or None for each of "
+                         f"{len(result.volumes)} volumes, got {len(result.names)} and "
+                         f"{len(result.nifti)}")
     volumes = [
         Volume(array, result.grid, name, nifti)
         for array, name, nifti in zip(result.volumes, result.names, result.nifti)
