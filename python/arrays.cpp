@@ -53,6 +53,11 @@ nb::dlpack::dtype dtype_of(PixelType type) {
 }
 
 VolumeView view_of(const AnySamples& samples, const Grid& grid) {
+  bool fits = samples.ndim() == 3 || samples.ndim() == 4;
+  for (std::size_t axis = 0; fits && axis < 3; ++axis) {
+    fits = static_cast<std::int64_t>(samples.shape(axis)) == grid.dims[2 - axis];
+  }
+  if (!fits) throw std::invalid_argument("samples: expected the shape of the grid, z y x");
   const int components = samples.ndim() == 4 ? static_cast<int>(samples.shape(3)) : 1;
   return {grid, pixel_type_of(samples.dtype()), components, samples.data(), memory_of(samples)};
 }

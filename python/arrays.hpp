@@ -46,6 +46,7 @@ Memory memory_of(const Array& array) {
 }
 
 /// Samples of shape [k][j][i] or [k][j][i][component], as a view that does not own them.
+/// @throws std::invalid_argument  the shape is not that of the grid, or the type no pixel type
 VolumeView view_of(const AnySamples& samples, const Grid& grid);
 /// The same as a Volume, which copies them.
 Volume volume_of(const InSamples& samples, const Grid& grid, const std::string& name);

@@ -5,6 +5,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -139,7 +141,15 @@ void write_volume_file(const std::string& path,
   std::vector<std::vector<InSamples>> samples;  // [array][step]
   for (const nb::dict& array : arrays) {
     samples.push_back(nb::cast<std::vector<InSamples>>(array["samples"], false));
-    const VolumeView first = view_of(AnySamples(samples.back().front()), grid);
+    std::vector<VolumeView> steps;
+    for (const InSamples& step : samples.back()) steps.push_back(view_of(AnySamples(step), grid));
+    const VolumeView& first = steps.front();
+    const auto is_other = [&](const VolumeView& step) {
+      return step.type != first.type || step.components != first.components;
+    };
+    if (std::ranges::any_of(steps, is_other)) {
+      throw std::invalid_argument("samples: expected steps of one type");
+    }
     ArrayHeader header{bytes_of(array["name"], "name"), first.type, first.components};
     nb::dict facts;
     if (array["nifti"].is_none()) {
@@ -168,7 +178,7 @@ void write_volume_file(const std::string& path,
   });
 }
 
-/// A MeshReader, whose calls are file calls.
+/// A MeshReader, whose calls are file calls; so is its end, which closes the file.
 class MeshFile {
  public:
   MeshFile(const std::string& path,
@@ -176,8 +186,14 @@ class MeshFile {
            const std::string& axes,
            bool keeps_curved)
       : reader_(open(path, rest_step, axes, keeps_curved)) {}
+  ~MeshFile() {
+    const std::lock_guard lock(file_mutex());
+    reader_.reset();
+  }
+  MeshFile(const MeshFile&) = delete;
+  MeshFile& operator=(const MeshFile&) = delete;
 
-  const MeshReader& reader() const { return reader_; }
+  const MeshReader& reader() const { return *reader_; }
 
  private:
   static MeshReader open(const std::string& path,
@@ -191,7 +207,7 @@ class MeshFile {
     return file_call([&] { return MeshReader(path, options); });
   }
 
-  MeshReader reader_;
+  std::optional<MeshReader> reader_;
 };
 
 nb::tuple mesh_arrays(const MeshFile& file) {
@@ -227,6 +243,7 @@ nb::tuple strings_of(std::span<const std::string_view> texts) {
 }  // namespace
 
 void bind_files(nb::module_& module) {
+  make_files_survive_forks();
   module.def(
       "kind_of",
       [](const std::string& path) { return name_of(file_call([&] { return kind_of(path); })); },

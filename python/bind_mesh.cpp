@@ -4,12 +4,16 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <tetwarp/make.hpp>
 #include <tetwarp/map_points.hpp>
 #include <tetwarp/surface.hpp>
+#include <utility>
+#include <vector>
 
+#include "host/base/repeated_cells.hpp"
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
@@ -51,6 +55,13 @@ NumpyArray deform(const InPoints& points,
   return array_of(deform_positions(mesh, options, time));
 }
 
+/// Per cell 1 where no cell before it is the same, as files are read.
+NumpyArray are_first(const std::vector<std::size_t>& firsts) {
+  std::vector<std::uint8_t> flags;
+  for (std::size_t c = 0; c < firsts.size(); ++c) flags.push_back(firsts[c] == c);
+  return array_of(std::move(flags));
+}
+
 nb::tuple surface_arrays(Surface surface) {
   return nb::make_tuple(array_of(std::move(surface.points)),
                         array_of(std::move(surface.triangles)));
@@ -69,6 +80,22 @@ void bind_mesh(nb::module_& module) {
         return surface_arrays(boundary_surface(mesh_of(points, tets, hexes)));
       },
       nb::arg("points"), nb::arg("tets"), nb::arg("hexes"));
+  module.def(
+      "first_triangles",
+      [](const InPoints& points, const InTriangles& triangles) {
+        return are_first(
+            first_copies(points_of(points), triangles_of(triangles), SameCells::turned_places));
+      },
+      nb::arg("points"), nb::arg("triangles"));
+  module.def(
+      "first_cells",
+      [](const InPoints& points, const InTets& tets, const InHexes& hexes, const InMidNodes& mids) {
+        const CurvedMesh mesh = curved_mesh_of(points, tets, hexes, mids);
+        const std::vector<Point3>& nodes = mesh.mesh.rest_positions;
+        return nb::make_tuple(are_first(first_tet_copies(nodes, mesh.mesh.tets, mesh.mid_nodes)),
+                              are_first(first_copies(nodes, mesh.mesh.hexes, SameCells::places)));
+      },
+      nb::arg("points"), nb::arg("tets"), nb::arg("hexes"), nb::arg("mids"));
   module.def(
       "isosurface",
       [](const InSamples& samples, const Grid& grid, double value,

@@ -3,7 +3,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tetwarp/contact_tracker.hpp>
 #include <utility>
@@ -175,6 +177,23 @@ ContactMaterial material_of(const nb::dict& all) {
   return material;
 }
 
+/// @throws std::invalid_argument  records have not the members that a tracker gives
+void check_members(const nb::dict& records) {
+  std::size_t known = 0;
+  for_record_members([&](const char* name, auto) {
+    if (!records.contains(name)) {
+      throw std::invalid_argument("records: has no '" + std::string(name) +
+                                  "', expected the table of a tracker");
+    }
+    ++known;
+  });
+  if (records.size() != known) {
+    throw std::invalid_argument("records: has " + std::to_string(records.size()) +
+                                " members, expected the " + std::to_string(known) +
+                                " of a tracker");
+  }
+}
+
 void make_tracker(ContactTracker* self,
                   const std::vector<nb::dict>& materials,
                   const nb::dict& numbers,
@@ -193,6 +212,7 @@ void make_tracker(ContactTracker* self,
                        .debond_gap_factor = number("debond_gap_factor"),
                        .debond_intensity = number("debond_intensity")};
   options.threads = threads;
+  if (records.size() > 0) check_members(records);
   new (self) ContactTracker(
       std::move(options),
       rows_of<ContactRecord>(record_count, records, [](auto each) { for_record_members(each); }));

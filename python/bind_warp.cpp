@@ -54,7 +54,15 @@ class ArrayWarper {
     });
   }
 
-  const Warper& warper() const { return warper_; }
+  /// What all steps share, with the records of the steps so far.
+  /// @throws std::runtime_error  a step is running, which adds its record
+  std::string report() {
+    const OneCall call(is_running_, "Warper");
+    return to_json(warper_.report());
+  }
+
+  /// @pre no step is running
+  const Report& shared() const { return warper_.report(); }
 
   bool shares_memory(const AnyOut& out) const {
     return std::ranges::any_of(sources_,
@@ -158,7 +166,7 @@ StepOf run_step(ArrayWarper& warper,
   target.holds_previous = holds_previous;
   target.stream = reinterpret_cast<void*>(stream);
   const StepReport step = warper.step(positions, target, std::move(progress));
-  const Report& whole = warper.warper().report();
+  const Report& whole = warper.shared();
   return {step,         whole.backend, whole.backend_reason,
           whole.device, whole.threads, whole.position_quantum};
 }
@@ -216,7 +224,7 @@ void bind_warp(nb::module_& module) {
            nb::arg("overshoot"), nb::arg("antialias"), nb::arg("intensity"), nb::arg("quantities"),
            nb::arg("outside"), nb::arg("falloff"), nb::arg("default_value"),
            nb::arg("output_grid").none(), nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
-      .def("report", [](const ArrayWarper& self) { return to_json(self.warper().report()); })
+      .def("report", &ArrayWarper::report)
       .def("step", &run_step, nb::arg("deformed"), nb::arg("volumes"), nb::arg("extras"),
            nb::arg("holds_previous"), nb::arg("stream"), nb::arg("progress").none());
 }

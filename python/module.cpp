@@ -4,12 +4,15 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
+#include <cstddef>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <tetwarp/backend.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/missing_library.hpp>
 #include <tetwarp/version.hpp>
+#include <utility>
 
 #include "python/bind.hpp"
 #include "python/text.hpp"
@@ -30,6 +33,20 @@ nb::list backends(int device) {
   return all;
 }
 
+/// A remedy that names options of the command, in words of the package.
+std::string in_words_of_python(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> words[] = {
+      {"--axes lps", "axes=\"lps\""},
+      {"--rest-step", "rest_step"},
+      {"--series UID", "read_dicom(series=)"},
+      {" (without --temporal, by --source-step)", ""}};
+  for (const auto& [option, argument] : words) {
+    const std::size_t place = text.find(option);
+    if (place != std::string::npos) text.replace(place, option.size(), argument);
+  }
+  return text;
+}
+
 /// Raises an error about a file, whose text may hold bytes of the file.
 void raise_io_error(const std::exception_ptr& pointer, void* module) {
   const nb::handle core(static_cast<PyObject*>(module));
@@ -40,7 +57,8 @@ void raise_io_error(const std::exception_ptr& pointer, void* module) {
     instance.attr("library") = error.library();
     PyErr_SetObject(instance.type().ptr(), instance.ptr());
   } catch (const tetwarp::IoError& error) {
-    const nb::object instance = core.attr("IoError")(tetwarp::python::text_of(error.what()));
+    const nb::object instance =
+        core.attr("IoError")(tetwarp::python::text_of(in_words_of_python(error.what())));
     PyErr_SetObject(instance.type().ptr(), instance.ptr());
   }
 }

@@ -2,7 +2,7 @@
 
     python simulate_warp.py
 
-Writes orange_0.nii.gz and so on, on a grid around the place where the orange is then.
+Writes orange_1.nii.gz to orange_4.nii.gz, each on a grid around the place where the orange is then.
 """
 
 import numpy as np

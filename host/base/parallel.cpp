@@ -2,6 +2,8 @@
 /// The pool of threads, and loops that it shares out.
 #include "host/base/parallel.hpp"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -140,10 +142,14 @@ class ThreadPool {
   int sleeping_ = 0;  ///< of these
 };
 
-/// Never destroyed: its threads use it until the process ends.
+/// Never destroyed: its threads use it until the process ends. The child of a fork, which has none
+/// of them, and may have its mutex locked for ever, gets a new one.
+ThreadPool* current_pool = new ThreadPool;
+[[maybe_unused]] const int renews_in_children =
+    pthread_atfork(nullptr, nullptr, [] { current_pool = new ThreadPool; });
+
 ThreadPool& thread_pool() {
-  static ThreadPool* const pool = new ThreadPool;
-  return *pool;
+  return *current_pool;
 }
 }  // namespace
 

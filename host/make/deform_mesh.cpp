@@ -167,7 +167,12 @@ std::vector<Point3> deform_positions(const Mesh& mesh, const DeformOptions& opti
   const Frame frame = frame_of(mesh.rest_positions, options.axis);
   for (Point3& x : positions) {
     const Point3 moved = displacement(frame, x, options, time);
-    for (std::size_t d = 0; d < 3; ++d) x[d] += moved[d];
+    for (std::size_t d = 0; d < 3; ++d) {
+      x[d] += moved[d];
+      if (std::isfinite(x[d])) continue;
+      throw std::invalid_argument(
+          "deform_positions: amount or offset is so large that positions are not finite");
+    }
   }
   return positions;
 }

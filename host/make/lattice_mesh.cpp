@@ -13,6 +13,7 @@
 #include "host/base/index_space.hpp"
 #include "host/base/lattice_cells.hpp"
 #include "host/base/pixel_dispatch.hpp"
+#include "host/base/sample_level.hpp"
 
 namespace tetwarp {
 namespace {
@@ -48,7 +49,7 @@ class ForegroundRows {
  private:
   template <class T>
   bool is_above(T sample) const {
-    return static_cast<double>(sample) > *threshold_;
+    return level_of(sample, *threshold_) > 0;
   }
 
   const Volume& volume_;

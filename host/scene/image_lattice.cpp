@@ -24,16 +24,27 @@ constexpr double least_edge = 16;  // [voxel]
 std::vector<std::uint8_t> foreground_of(const ImageGeometry& image, const Region& region) {
   std::vector<std::uint8_t> flags;
   flags.reserve(static_cast<std::size_t>(region.voxel_count()));
-  VolumeRows rows(image.volume);
+  VolumeRows rows(image.volume, image.threshold);
   for (std::int64_t k = region.begin[2]; k < region.end[2]; ++k) {
     for (std::int64_t j = region.begin[1]; j < region.end[1]; ++j) {
       const auto& row = rows.row(j, k);
       for (std::int64_t i = region.begin[0]; i < region.end[0]; ++i) {
-        flags.push_back(row[static_cast<std::size_t>(i)] >= image.threshold);
+        flags.push_back(row[static_cast<std::size_t>(i)] >= 0);
       }
     }
   }
   return flags;
+}
+
+double largest_sample(const Volume& volume) {
+  double largest = -std::numeric_limits<double>::infinity();
+  VolumeRows rows(volume);
+  for (std::int64_t k = 0; k < volume.grid.dims[2]; ++k) {
+    for (std::int64_t j = 0; j < volume.grid.dims[1]; ++j) {
+      for (const double sample : rows.row(j, k)) largest = std::fmax(largest, sample);
+    }
+  }
+  return largest;
 }
 
 bool has_small_cells(const LatticeFrame& frame) {
@@ -103,15 +114,12 @@ class ForegroundLattice {
 Region foreground_box(const std::string& place, const ImageGeometry& image) {
   const auto& dims = image.volume.grid.dims;
   Region box{dims, {0, 0, 0}};
-  double largest = -std::numeric_limits<double>::infinity();
-  VolumeRows rows(image.volume);
+  VolumeRows rows(image.volume, image.threshold);
   for (std::int64_t k = 0; k < dims[2]; ++k) {
     for (std::int64_t j = 0; j < dims[1]; ++j) {
       const auto& row = rows.row(j, k);
       for (std::int64_t i = 0; i < dims[0]; ++i) {
-        const double sample = row[static_cast<std::size_t>(i)];
-        largest = std::fmax(largest, sample);
-        if (!(sample >= image.threshold)) continue;
+        if (!(row[static_cast<std::size_t>(i)] >= 0)) continue;
         const std::array<std::int64_t, 3> voxel{i, j, k};
         for (std::size_t d = 0; d < 3; ++d) {
           box.begin[d] = std::min(box.begin[d], voxel[d]);
@@ -123,7 +131,8 @@ Region foreground_box(const std::string& place, const ImageGeometry& image) {
   if (box.end[0] == 0) {
     fail_at(key_of(place, "threshold"),
             "no sample of '" + image.volume.name + "' is " + number_text(image.threshold) +
-                " or more, the largest is " + number_text(largest) + "; lower the threshold");
+                " or more, the largest is " + number_text(largest_sample(image.volume)) +
+                "; lower the threshold");
   }
   return box;
 }

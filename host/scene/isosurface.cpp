@@ -44,12 +44,12 @@ class ImageLevel {
       high_[d] = static_cast<double>(box_.end[d]) - 0.5;
     }
     levels_.reserve(static_cast<std::size_t>(box_.voxel_count()));
-    VolumeRows rows(image.volume);
+    VolumeRows rows(image.volume, image.threshold);
     for (std::int64_t k = box_.begin[2]; k < box_.end[2]; ++k) {
       for (std::int64_t j = box_.begin[1]; j < box_.end[1]; ++j) {
         const auto& row = rows.row(j, k);
         for (std::int64_t i = box_.begin[0]; i < box_.end[0]; ++i) {
-          const double level = row[static_cast<std::size_t>(i)] - image.threshold;
+          const double level = row[static_cast<std::size_t>(i)];
           levels_.push_back(std::isnan(level) ? -1 : level);
         }
       }

@@ -2,6 +2,7 @@
 
 import gc
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -270,3 +271,70 @@ def test_images_of_nibabel_are_references(volume, mesh, twisted):
 
     assert result.volume.shape == (10, 12, 16)
     assert np.allclose(result.grid.affine, image.affine)
+
+
+@pytest.mark.parametrize("dtype", [
+    "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64"])
+def test_a_default_value_that_is_stored_as_another_one_is_told(dtype, single_tet):
+    points, cells = single_tet
+    samples = np.zeros((2, 2, 2), dtype)
+    options = dict(interpolator="nearest", threads=1)
+    limits = np.iinfo(dtype) if np.dtype(dtype).kind in "iu" else np.finfo(dtype)
+    values = [0, -1, 1, 0.5, 1.5, 200, 300.5, -40000, 2**40, 1e300, float(limits.min), float(limits.max)]
+
+    for value in values:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            stored = tetwarp.warp(
+                samples, points, cells, points + 90, default_value=value, **options).volume[0, 0, 0]
+        is_whole = np.dtype(dtype).kind in "iu"
+        kept = float(stored) == value if is_whole else bool(np.isfinite(stored))
+        assert len(caught) == (not kept), (value, stored)
+        for warning in caught:
+            assert warning.filename == __file__ and warning.category is RuntimeWarning
+            assert str(warning.message).endswith(f"does not fit {dtype}, {float(stored):g} is stored")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        tetwarp.warp(samples, points, cells, points, outside="identity", default_value=0.5, **options)
+
+
+@pytest.mark.parametrize("dtype", ["int64", "uint64"])
+@pytest.mark.parametrize("shift", [2**53, 2**60, 2**62])
+def test_thresholds_see_all_digits_of_64_bit_samples(dtype, shift):
+    """Samples and threshold that are shifted alike have the same surface and the same lattice."""
+    small = np.random.default_rng(3).integers(0, 1025, (7, 8, 9)).astype(dtype)
+    shifted = small + np.array(shift, dtype)
+
+    small[3, 4, 5] = 2047
+    shifted[3, 4, 5] = shift + 2047
+    expected = tetwarp.isosurface(small, 1024)
+    surface = tetwarp.isosurface(shifted, shift + 1024)
+    assert np.array_equal(surface.points, expected.points)
+    assert np.array_equal(surface.triangles, expected.triangles)
+    one = np.zeros((6, 6, 6), dtype)
+    one[2, 3, 4] = 1
+    expected = tetwarp.lattice_mesh(one, cells=1, threshold=0)
+    mesh = tetwarp.lattice_mesh(one + np.array(shift, dtype), cells=1, threshold=shift)
+    assert np.array_equal(mesh.points, expected.points)
+    for call in (tetwarp.isosurface, lambda a, t: tetwarp.lattice_mesh(a, threshold=t)):
+        for wrong in (shift + 1, np.int64(shift + 1)):
+            with pytest.raises(ValueError, match="expected a number that float64 holds"):
+                call(shifted, wrong)
+
+
+@pytest.mark.parametrize("kind", ["twist", "bend", "swim", "random", "rotate", "translate"])
+def test_arguments_of_other_deformations_are_refused(kind, mesh):
+    """An argument changes the positions, or is refused."""
+    given = {"amount": 0.5, "axis": "x", "seed": 7, "offset": (1.0, 2, 3)}
+    usual = tetwarp.deform(*mesh, kind=kind)
+    refused = set()
+
+    for name, value in given.items():
+        try:
+            moved = tetwarp.deform(*mesh, kind=kind, **{name: value})
+        except ValueError as error:
+            assert str(error) == f"{name}: has no effect on kind {kind!r}; leave it out"
+            refused.add(name)
+        else:
+            assert not np.array_equal(moved, usual), name
+    assert refused and refused != set(given)

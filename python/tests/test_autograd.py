@@ -13,7 +13,10 @@ import tetwarp
 class StandInTensor:
     def __init__(self, array):
         self.array = array
-        self.shape = array.shape
+        self.shape, self.dtype = array.shape, array.dtype
+
+    def is_floating_point(self):
+        return self.array.dtype.kind == "f"
 
     def detach(self):
         return self
@@ -87,3 +90,32 @@ def test_without_pytorch_it_says_so(monkeypatch, volume, mesh, twisted):
 
     with pytest.raises(ImportError, match="python3 -m pip install torch"):
         tetwarp.autograd_warp(volume, *mesh, twisted)
+
+
+def _tensors():
+    """The stand-in's, and those of PyTorch where it is."""
+    try:
+        import torch
+    except ImportError:
+        return [StandInTensor]
+    return [StandInTensor, torch.from_numpy]
+
+
+@pytest.mark.parametrize("make", _tensors(), ids=["stand-in", "pytorch"][:len(_tensors())])
+@pytest.mark.parametrize("dtype", ["u1", "i1", "i2", "i4", "i8", "?", "c8", "c16", "f2", "f4", "f8"])
+def test_only_floats_are_differentiated(dtype, make, volume, mesh, twisted, request):
+    """Integers would be cut and wrap around, complex numbers would lose their imaginary part."""
+    if make is StandInTensor:
+        request.getfixturevalue("stand_in")
+    samples = np.ascontiguousarray(volume.array[:9, :9, :9] * 3 + 1).astype(dtype)
+    given = {"volume": samples, "deformed": twisted.astype(dtype)}
+    usual = {"volume": samples.real.astype(float), "deformed": twisted}
+
+    for name, array in given.items():
+        tensors = {key: make(value) for key, value in (usual | {name: array}).items()}
+        call = lambda: tetwarp.autograd_warp(tensors["volume"], *mesh, tensors["deformed"])
+        if np.dtype(dtype).kind == "f":
+            call()
+            continue
+        with pytest.raises(ValueError, match=f"{name}: expected a tensor of floats"):
+            call()

@@ -11,7 +11,7 @@ import tetwarp
 DIRECTION = ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
 
 
-@pytest.fixture(params=[(), (3,)], ids=["numbers", "vectors"])
+@pytest.fixture(params=[(), (2,), (3,), (6,), (9,)], ids=str)
 def turned(request):
     """A volume on a turned grid of three different lengths."""
     array = np.random.default_rng(1).random((3, 4, 5, *request.param)).astype(np.float32)
@@ -27,7 +27,10 @@ def test_nibabel_there_and_back(turned, axes):
     back = tetwarp.volume_from(image, axes=axes)
     assert np.array_equal(back.array, turned.array)
     assert np.allclose(back.affine, turned.affine)
-    assert image.get_fdata()[4, 1, 2].tolist() == turned.array[2, 1, 4].tolist()
+    here = image.get_fdata()[4, 1, 2].squeeze()
+    if turned.shape[3:] == (6,):  # NIfTI has the rows below the diagonal
+        here = here[[0, 2, 5, 1, 4, 3]]
+    assert np.array_equal(here, turned.array[2, 1, 4])
     place = image.affine @ (4, 1, 2, 1)
     signs = (1, 1, 1, 1) if axes == "RAS" else (-1, -1, 1, 1)
     assert np.allclose(place * signs, turned.affine @ (4, 1, 2, 1))
@@ -128,3 +131,50 @@ def test_numbers_of_nodes_are_not_cut():
     cells = {"tetra": np.array([(0, 1, 2, 2**32 + 3)])}
     with pytest.raises(ValueError, match="mesh: expected numbers of nodes from 0 to 3, found"):
         tetwarp.mesh_from(types.SimpleNamespace(points=np.eye(4, 3), cells_dict=cells))
+
+
+@pytest.mark.parametrize("order", "CF")
+def test_images_of_nibabel_are_copied_and_go_by_files(turned, order, tmp_path):
+    """What to_nibabel saves is what write writes, and reading either way gives the volume."""
+    nibabel = pytest.importorskip("nibabel")
+    image = tetwarp.to_nibabel(turned, axes="RAS")
+    nibabel.save(image, tmp_path / "theirs.nii")
+    tetwarp.write(tmp_path / "ours.nii", turned)
+
+    read = tetwarp.read(tmp_path / "theirs.nii")
+    back = tetwarp.volume_from(nibabel.load(tmp_path / "ours.nii"), axes="RAS")
+
+    assert np.array_equal(read.array, turned.array) and np.array_equal(back.array, turned.array)
+    ours = tetwarp.read(tmp_path / "ours.nii").nifti
+    assert read.nifti["intent_code"] == ours["intent_code"]
+    assert np.array_equal(read.nifti["intent_p"], ours["intent_p"])
+    data = np.array(image.dataobj, order=order)
+    copy = tetwarp.volume_from(nibabel.Nifti1Image(data, np.eye(4), image.header), axes="RAS")
+    assert not np.shares_memory(copy.array, data)
+    assert np.array_equal(copy.array, turned.array)
+
+
+@pytest.mark.parametrize("shape", [(4, 3, 2, 2), (4, 3, 2, 5), (4, 3, 2, 2, 3), (4, 3, 2, 1, 3, 2)])
+def test_several_times_of_nibabel_are_refused(shape):
+    nibabel = pytest.importorskip("nibabel")
+    image = nibabel.Nifti1Image(np.zeros(shape, np.float32), np.eye(4))
+
+    with pytest.raises(ValueError, match="image: expected one time"):
+        tetwarp.volume_from(image, axes="RAS")
+    if len(shape) == 4:
+        one = tetwarp.volume_from(image.slicer[:, :, :, 1:2], axes="RAS")
+        assert one.shape == (2, 3, 4)
+
+
+@pytest.mark.parametrize("kind, count", [("tetra", 4), ("tetra10", 10), ("hexahedron", 8)])
+@pytest.mark.parametrize("dtype", ["f8", "?", "c16", "i2", "u8"])
+def test_numbers_of_nodes_are_integers(kind, count, dtype):
+    cells = np.arange(count)[None].astype(dtype)
+    mesh = types.SimpleNamespace(points=np.random.default_rng(2).random((count, 3)),
+                                 cells_dict={kind: cells})
+
+    if cells.dtype.kind in "iu":
+        assert tetwarp.mesh_from(mesh).cells.tolist() == [list(range(count))]
+        return
+    with pytest.raises(ValueError, match="mesh: expected integers"):
+        tetwarp.mesh_from(mesh)

@@ -111,3 +111,85 @@ def test_results_say_what_they_are(volume, mesh, twisted):
     assert "float32, with mask; " in repr(result) and "% of 15360 voxels" in repr(result)
     with pytest.raises(AttributeError, match=r"ask for it by outputs=\('owner',\)"):
         result.owner
+
+
+def _within(start, calls):
+    """What each call gives while `start` runs, in its callback."""
+    answers = {}
+
+    def look(*_):
+        for name, call in calls.items():
+            try:
+                call()
+                answers[name] = "done"
+            except RuntimeError as error:
+                answers[name] = str(error)
+
+    start(look)
+    return answers
+
+
+def test_whatever_changes_in_a_step_is_not_read_meanwhile(volume, mesh, twisted):
+    """A step of a Warper ends with a record in its report, which may take other memory for it."""
+    warper = tetwarp.Warper(volume, *mesh)
+    warper(twisted)
+    answers = _within(lambda progress: warper(twisted, progress=progress), {
+        "report": lambda: warper.report, "call": lambda: warper(twisted),
+        "grid": lambda: warper.grid, "repr": lambda: repr(warper)})
+
+    assert answers.pop("grid") == answers.pop("repr") == "done"
+    assert set(answers.values()) == {"Warper: a call of this object is running"}
+    assert len(warper.report["steps"]) == 2
+    simulator = tetwarp.Simulator(tetwarp.shipped_scene("cantilever"), threads=1)
+    state = simulator.checkpoint()
+    per_body = ("mesh", "positions", "velocities", "surface", "volume", "jacobians", "stresses")
+    calls = {name: lambda name=name: getattr(simulator, name)(0) for name in per_body}
+    calls |= {name: lambda name=name: getattr(simulator, name)() for name in (
+        "step", "record", "contacts", "checkpoint")}
+    calls |= {name: lambda name=name: getattr(simulator, name) for name in (
+        "time", "time_step", "step_index", "step_count", "thickness", "backend", "obstacle_names")}
+    calls |= {"restore": lambda: simulator.restore(state),
+              "add_handle": lambda: simulator.add_handle("h", 0, (0, 0, 0), 1.0),
+              "move_handle": lambda: simulator.move_handle("h", (0, 0, 0)),
+              "release_handle": lambda: simulator.release_handle("h"),
+              "move_script": lambda: simulator.move_script("beam", (0, 0, 0))}
+    public = {name for name in dir(simulator) if not name.startswith("_")}
+    assert public - set(calls) == {"names", "run"}
+
+    answers = _within(lambda progress: simulator.step(progress=progress), calls)
+
+    assert answers.keys() == calls.keys()
+    assert all("of this object is running" in text for text in answers.values()), answers
+    solver = tetwarp.ContactSolver()
+    problem = tetwarp.ContactProblem(delassus=np.eye(3), free_velocity=[-1, 2, 0], friction=[0.5])
+    answers = _within(lambda progress: solver.solve(problem, progress=progress),
+                      {"solve": lambda: solver.solve(problem)})
+    assert answers == {"solve": "ContactSolver: a call of this object is running"}
+
+
+def test_the_report_is_whole_while_another_thread_steps(single_tet):
+    points, cells = single_tet
+    warper = tetwarp.Warper(np.ones((4, 4, 4), np.uint8), points, cells, threads=1)
+    done, stepped = threading.Event(), []
+
+    def work():
+        for _ in range(3000):
+            try:
+                warper(points)
+                stepped.append(True)
+            except RuntimeError:  # the report is being read
+                pass
+        done.set()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    while not done.is_set():
+        try:
+            steps = warper.report["steps"]
+        except RuntimeError:
+            continue
+        assert [step["step"] for step in steps] == list(range(len(steps)))
+        assert all(step["counts"]["voxels"] == 64 for step in steps)
+    thread.join()
+
+    assert len(warper.report["steps"]) == len(stepped)

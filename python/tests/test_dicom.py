@@ -158,6 +158,15 @@ def test_a_slope_without_a_value_is_1(pixels):
     assert np.array_equal(tetwarp.read_dicom(slices, axes="LPS").array, pixels)
 
 
+@pytest.mark.parametrize("numbers", [(0, 1), (0, 0), (np.nan, 0), (1, np.inf)])
+def test_slopes_that_erase_samples_are_refused(numbers, pixels):
+    slices = ct_series(pixels, 1, 0)
+    slices[1].RescaleSlope, slices[1].RescaleIntercept = map(float, numbers)
+
+    with pytest.raises(ValueError, match="source: has a rescale slope or intercept"):
+        tetwarp.read_dicom(slices, axes="LPS")
+
+
 @pytest.mark.parametrize("offsets, message", [
     (None, "expected a GridFrameOffsetVector of 4 frames, found 1"),
     ([0, 5], "expected a GridFrameOffsetVector of 4 frames, found 2"),

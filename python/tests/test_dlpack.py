@@ -117,5 +117,13 @@ def test_pytorch_shares_memory_both_ways(volume, mesh, twisted):
         assert np.array_equal(tensor.numpy(), expected.volume)
     assert np.array_equal(fresh.owner.numpy(), expected.owner)
     assert isinstance(tetwarp.transform_points(torch.zeros((2, 3)), *mesh, twisted), torch.Tensor)
+    for grid in (samples, samples[..., None].repeat(1, 1, 1, 2), samples.requires_grad_()):
+        operator = tetwarp.WarpOperator(grid, *mesh, twisted, affine=volume.affine)
+        assert operator.grid == volume.grid
     with pytest.raises(ValueError, match="volume: cannot be read by DLPack"):
-        tetwarp.warp(samples.requires_grad_(), *mesh, twisted, affine=volume.affine)
+        tetwarp.warp(samples, *mesh, twisted, affine=volume.affine)
+    for call in (lambda out: tetwarp.warp(volume, *mesh, twisted, out=out),
+                 lambda out: operator.forward(volume, out=out)):
+        for dtype in (torch.float32, torch.float64):
+            with pytest.raises(ValueError, match="out: expected a tensor that needs no gradient"):
+                call(torch.zeros(volume.shape, dtype=dtype, requires_grad=True))

@@ -3,6 +3,7 @@
 import gc
 import os
 import resource
+import signal
 import subprocess
 import sys
 import threading
@@ -114,6 +115,66 @@ def test_a_fork_warps_on(volume, mesh, twisted):
         os._exit(0 if same else 1)
 
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def test_files_are_opened_read_and_closed_by_several_threads(mesh, tmp_path):
+    steps = [mesh.points + 0.25 * number for number in range(4)]
+    for number in range(3):
+        tetwarp.write(tmp_path / f"{number}.vtkhdf", mesh, deformed=steps)
+    found = []
+
+    def work(number):
+        for _ in range(40):
+            file = tetwarp.MeshFile(tmp_path / f"{number}.vtkhdf")
+            found.append(all(map(np.array_equal, file, steps)))
+            del file  # closes it while others read
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+    assert found == [True] * 120
+
+
+@pytest.mark.parametrize("work", ["read", "write", "scene", "warp", "points"])
+def test_a_fork_goes_on_while_other_threads_are_in_calls(work, volume, mesh, twisted, tmp_path):
+    """Children have none of the threads that held a lock or did a part of a loop."""
+    paths = [tmp_path / f"{name}.vtkhdf" for name in ("read", "written", "of the child")]
+    tetwarp.write(paths[0], volume, compress=9)
+    scene = {**tetwarp.shipped_scene("cantilever"), "duration": 0.01}
+    call = {
+        "read": lambda to: tetwarp.read(paths[0]),
+        "write": lambda to: tetwarp.write(to, volume, compress=9),
+        "scene": lambda to: tetwarp.Simulator(scene, threads=2).step(),
+        "warp": lambda to: tetwarp.warp(volume, *mesh, twisted, threads=2),
+        "points": lambda to: tetwarp.transform_points(mesh.points, *mesh, twisted),
+    }[work]
+    stop = threading.Event()
+
+    def work_on():
+        while not stop.is_set():
+            call(paths[1])
+
+    thread = threading.Thread(target=work_on)
+    thread.start()
+    try:
+        for _ in range(8):
+            child = os.fork()
+            if child == 0:
+                signal.signal(signal.SIGALRM, signal.SIG_DFL)
+                signal.alarm(30)  # ends it where it hangs
+                status = 1
+                try:
+                    call(paths[2])
+                    status = 0
+                finally:
+                    os._exit(status)
+            assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    finally:
+        stop.set()
+        thread.join()
 
 
 def test_sub_interpreters_are_refused_in_words(tmp_path):

@@ -157,3 +157,23 @@ def test_points_that_are_no_places_have_no_owner(mesh, twisted, volume):
         moved, owners = tetwarp.transform_points(
             odd, *mesh, twisted, reference=reference, return_owners=True)
         assert np.isnan(moved).all() and (owners == -1).all()
+
+
+@pytest.mark.parametrize("outside", [{"outside": "nearest"}, {"outside": "falloff", "falloff": 30.0}])
+def test_displacements_outside_are_those_of_the_warp(outside, volume, mesh, twisted):
+    field = tetwarp.displacement_field(*mesh, twisted, reference=volume, **outside)
+    usual = tetwarp.displacement_field(*mesh, twisted, reference=volume)
+    warped = tetwarp.warp(volume, *mesh, twisted, outputs=("displacement", "mask"), **outside)
+
+    assert np.array_equal(field.values, warped.displacement)
+    assert np.array_equal(field.mask, warped.mask.astype(bool))
+    assert np.array_equal(field.values[field.mask], usual.values[field.mask])
+    assert (field.values[~field.mask] != 0).any() and (usual.values[~field.mask] == 0).all()
+    for call in (
+        lambda: tetwarp.displacement_field(
+            *mesh, twisted, reference=volume, convention="modeling", **outside),
+        lambda: tetwarp.strain(*mesh, twisted, reference=volume, **outside),
+        lambda: tetwarp.rasterize(*mesh, reference=volume, **outside),
+    ):
+        with pytest.raises((ValueError, TypeError), match="outside"):
+            call()

@@ -238,3 +238,56 @@ def test_arguments_without_an_effect_are_refused(volume, mesh, twisted, tmp_path
             with pytest.raises(ValueError, match=f"{given}: has no effect on a"):
                 tetwarp.read(tmp_path / f"{name}.vtkhdf", **{given: value})
     assert not (tmp_path / "none.vtkhdf").exists()
+
+
+@pytest.mark.parametrize("case", [str.lower, str.upper])
+@pytest.mark.parametrize("ending", tetwarp._core.volume_endings)
+def test_what_has_no_effect_on_a_volume_is_refused(ending, case, tmp_path):
+    """`compress` packs, or is refused; `axes` turn, or are refused: for all formats."""
+    path = tmp_path / f"a{case(ending)}"
+    zeros = np.zeros((20, 20, 20), np.float32)
+    grid = tetwarp.Grid(zeros.shape)
+    tetwarp.write(path, zeros, grid=grid)
+    plain = sum(file.stat().st_size for file in tmp_path.iterdir())
+
+    try:
+        tetwarp.write(path, zeros, grid=grid, compress=9)
+    except ValueError as error:
+        assert str(error).startswith("compress: has no effect on a volume of")
+        assert ending in (".nii", ".mgh", ".vti")
+        assert plain > zeros.nbytes
+    else:
+        packed = [file for file in tmp_path.iterdir() if file.suffix.lower() != ".raw"]
+        assert sum(file.stat().st_size for file in packed) < zeros.nbytes / 4
+        assert ending not in (".nii", ".mgh", ".vti")
+    components = () if ending in (".mgh", ".mgz") else (3,)  # these hold one number per voxel
+    vectors = np.random.default_rng(1).random((2, 3, 4, *components)).astype(np.float32)
+    tetwarp.write(path, vectors, grid=tetwarp.Grid((2, 3, 4)))
+    usual = tetwarp.read(path).array
+    if ending in (".nii", ".nii.gz"):
+        assert np.array_equal(tetwarp.read(path, axes="lps").array, usual * np.float32([-1, -1, 1]))
+        return
+    with pytest.raises((ValueError, OSError), match="axes"):
+        tetwarp.read(path, axes="lps")
+
+
+def test_axes_of_meshes_of_vtkhdf_are_refused(mesh, tmp_path):
+    tetwarp.write(tmp_path / "a.vtkhdf", mesh)
+
+    for call in (tetwarp.read, tetwarp.MeshFile):
+        with pytest.raises(ValueError, match="axes: has no effect on a mesh of VTKHDF"):
+            call(tmp_path / "a.vtkhdf", axes="lps")
+
+
+def test_remedies_name_arguments_of_the_package(tmp_path):
+    tetwarp.write(tmp_path / "a.nii", np.zeros((2, 3, 4)), grid=tetwarp.Grid((2, 3, 4)))
+    calls = {
+        'axes="lps" turns': lambda: tetwarp.read(tmp_path / "a.nii", axes="lps"),
+        "steps in files of their own$": lambda: tetwarp.write(
+            tmp_path / "a.vti", [np.zeros((2, 3, 4))] * 2, grid=tetwarp.Grid((2, 3, 4)), times=[0, 1]),
+    }
+
+    for text, call in calls.items():
+        with pytest.raises(tetwarp.IoError, match=text) as caught:
+            call()
+        assert "--" not in str(caught.value)

@@ -105,12 +105,21 @@ def test_images_of_vtk_are_filled_as_arrays_are(fill, scan):
 
 
 def test_meshes_of_vtk_are_read(fill, scan):
+    from vtkmodules.vtkCommonCore import vtkIdList
+
     volume, mesh, _ = scan
     hexes = tetwarp.lattice_mesh(volume, cells=3, hexahedra=True)
 
     for points, cells in (mesh, hexes):
         read_points, read_cells = fill.mesh_of(vtk_mesh(points, cells))
         assert np.array_equal(read_points, points) and np.array_equal(read_cells, cells)
+    with_flat = vtk_mesh(*mesh)
+    for kind, count in {1: 1, 3: 2, 5: 3, 7: 5, 9: 4, 21: 3, 22: 6, 23: 8, 28: 9, 68: 3}.items():
+        ids = vtkIdList()
+        for node in range(count):
+            ids.InsertNextId(node)
+        with_flat.InsertNextCell(kind, ids)  # points, edges, faces, also curved ones: left out
+    assert np.array_equal(fill.mesh_of(with_flat)[1], mesh.cells)
     wrong = vtk_mesh(*mesh)
     wrong.GetCellTypesArray().SetValue(1, 14)  # a pyramid
     with pytest.raises(ValueError, match=r"found cells of VTK's types \[10, 14\]"):

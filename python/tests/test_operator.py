@@ -146,3 +146,16 @@ def test_bad_samples_are_named(volume, mesh, twisted, samples):
     with pytest.raises(ValueError, match="node_gradient: conservative shares have no derivatives"):
         tetwarp.WarpOperator(volume, *mesh, twisted, intensity="conservative").node_gradient(
             samples, samples)
+
+
+@pytest.mark.parametrize("keywords", [{}, {"spacing": (1, 2, 3)}, {"affine": np.diag([3, 4, 5, 1])}])
+def test_any_array_gives_the_grid(keywords, volume, mesh, twisted):
+    expected = tetwarp.WarpOperator(volume.array, *mesh, twisted, **keywords).source_grid
+
+    for source in (volume.array.tolist(), list(volume.array), tuple(volume.array),
+                   volume.array[..., None].repeat(2, axis=-1)):
+        operator = tetwarp.WarpOperator(source, *mesh, twisted, **keywords)
+        assert operator.source_grid == expected
+    if keywords:
+        with pytest.raises(ValueError, match="source: it has a grid"):
+            tetwarp.WarpOperator(volume, *mesh, twisted, **keywords)

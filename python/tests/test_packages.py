@@ -119,3 +119,64 @@ def test_other_errors_stay_as_they_are(tmp_path):
         tetwarp.read(tmp_path / "none.vtu")
 
     assert "meshio" not in str(caught.value)
+
+
+def _touching(random):
+    """Tetrahedra that touch in points, edges and faces of a coarse grid, each with points of its own
+    or with shared ones, among points of none."""
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
+    faces = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+    points, triangles = [random.random((2, 3))], []
+    for _ in range(6):
+        start = sum(map(len, points))
+        points.append((corners + random.integers(0, 2, 3)) * random.choice((-1.0, 1), 3))
+        triangles.append(random.permutation(faces)[:random.integers(1, 5)] + start)
+    points, triangles = np.vstack(points), np.vstack(triangles)
+    if random.random() < 0.5:  # the first three pieces in common
+        _, first, place = np.unique(points[:14], axis=0, return_index=True, return_inverse=True)
+        triangles = np.append(first[place.reshape(-1)], np.arange(14, len(points)))[triangles]
+    return points, triangles.astype(np.int32)
+
+
+@pytest.mark.parametrize("ending", ["ply", "obj", "stl"])
+@pytest.mark.parametrize("seed", range(5))
+def test_surfaces_by_meshio_are_those_of_tetwarp_read(ending, seed, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points, triangles = _touching(np.random.default_rng(seed))
+    path = tmp_path / f"a.{ending}"
+    meshio.Mesh(points, [("triangle", triangles)]).write(path)
+    try:
+        expected = tetwarp.read(path)
+    except tetwarp._core.MissingLibrary:
+        pytest.skip("tetwarp-read has no VTK")
+
+    read = tetwarp._packages.read_surface(str(path), OSError("no VTK"))
+
+    assert np.array_equal(read.points, expected.points)
+    assert np.array_equal(read.triangles, expected.triangles)
+
+
+@pytest.mark.parametrize("hexahedra", [False, True])
+@pytest.mark.parametrize("seed", range(2))
+def test_meshes_by_meshio_are_those_of_tetwarp_read(hexahedra, seed, tmp_path):
+    """Of cells that are there twice, with the same nodes or with others at their places, one stays."""
+    meshio = pytest.importorskip("meshio")
+    random = np.random.default_rng(seed)
+    points, cells = tetwarp.lattice_mesh(np.ones((4, 4, 4)), cells=2, hexahedra=hexahedra)
+    again = random.choice(len(cells), 5)
+    both = np.vstack([cells, cells[again], cells[again] + len(points)])
+    both = both[random.permutation(len(both))]
+    kind = "hexahedron" if hexahedra else "tetra"
+    path = tmp_path / "a.vtu"
+    meshio.Mesh(np.vstack([points, points]), [(kind, both)]).write(path)
+    try:
+        expected = tetwarp.MeshFile(path)
+    except tetwarp._core.MissingLibrary:
+        pytest.skip("tetwarp-read has no VTK")
+
+    read = tetwarp._packages.MeshioFile(str(path), 0, "ras", OSError("no VTK"))
+
+    tets, hexes = read.mesh()[1:3]
+    assert np.array_equal(read.mesh()[0], expected.mesh.points)
+    assert np.array_equal(hexes if hexahedra else tets, expected.mesh.cells)
+    assert expected.mesh.cell_count == len(cells)

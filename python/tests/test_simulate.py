@@ -3,6 +3,7 @@
 import gc
 import json
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -212,3 +213,31 @@ def test_a_step_may_be_given_a_time():
     assert limited.record().out_of_time is False
     with pytest.raises(ValueError, match="max_step_seconds: expected more than 0"):
         tetwarp.Simulator(scene, max_step_seconds=0)
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf, np.float32("nan")])
+@pytest.mark.parametrize("key, place", [
+    ("duration", lambda scene, x: scene.update(duration=x)),
+    ("gravity[2]", lambda scene, x: scene.update(gravity=[0, 0, x])),
+    ("gravity[1]", lambda scene, x: scene.update(gravity=np.array([0, x, 0]))),
+    ("bodies[0].material.E", lambda scene, x: scene["bodies"][0]["material"].update(E=x)),
+])
+def test_a_number_that_is_none_is_named_by_its_key(key, place, number):
+    scene = tetwarp.shipped_scene("cantilever")
+    place(scene, number)
+
+    with pytest.raises(ValueError, match=re.escape(f"scene: {key}: expected a finite number")):
+        tetwarp.Simulator(scene)
+
+
+def test_masks_of_scenes_are_refused():
+    gravity = np.ma.array([0, 0, -9.81], mask=[0, 0, 1])
+    for masked in (gravity, list(gravity), [gravity[0], 0, np.ma.masked]):
+        with pytest.raises(ValueError, match="scene: masked elements"):
+            tetwarp.Simulator({**tetwarp.shipped_scene("cantilever"), "gravity": masked})
+
+
+def test_no_folder_is_the_current_one(tmp_path, monkeypatch):
+    scene = tetwarp.shipped_scene("cantilever")
+    for folder in (None, "", ".", tmp_path, str(tmp_path).encode()):
+        assert tetwarp.Simulator(scene, folder=folder, threads=1).names == ["beam"]

@@ -178,3 +178,22 @@ def test_bad_bodies_options_and_orders_are_named():
         tracker.end_step(np.zeros((1, 3)), (REST, REST), velocity=np.zeros((2, 3)))
     with pytest.raises(ValueError, match=r"solution: impulse: expected numbers of shape \(1, 3\)"):
         tracker.end_step(np.zeros((2, 3)), (REST, REST))
+
+
+def test_vertices_may_be_rows_in_any_list():
+    rows = [(0.0, 0, 0), (1.0, 0, 0), (0.0, 1, 0), (0.0, 0, 1), (1.0, 1, 1)]
+    for count in (1, 3, 4, 5):
+        found = dict(keys=[(0, 0, 1, 0)], point_a=[rows[0]], point_b=[rows[0]], normal=[(0, 0, 1)],
+                     vertices_a=[(0, -1, -1)], weights_a=[(1.0, 0, 0)])
+        bits = set()
+        for body in (np.array(rows[:count]), rows[:count], tuple(rows[:count])):
+            contacts = tetwarp.ContactTracker().begin_step(
+                found, [body, ((0, 0, 0), (1, 0, 0, 0))], 0.01)
+            bits.add(contacts.point_a.tobytes() + contacts.gap.tobytes())
+        assert len(bits) == 1, count
+
+
+def test_a_step_that_has_not_begun_does_not_end():
+    for impulse in (np.zeros((1, 3)), [(0, 0, 0)], 0, None, []):
+        with pytest.raises((RuntimeError, ValueError), match="end_step|impulse"):
+            tetwarp.ContactTracker().end_step(impulse, [])

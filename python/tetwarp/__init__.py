@@ -17,8 +17,9 @@ from ._bridges import (
 )
 from ._certify import Certificate, Collisions, certify, find_collisions
 from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
-from ._core import Cancelled, CudaError, IoError, available_backends
+from ._core import Cancelled, CudaError, IoError
 from ._core import version as __version__
+from ._device import available_backends
 from ._dicom import read_dicom, to_rtdose
 from ._fields import (
     Field,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 import os
 import sys
 from typing import Any, Callable, Sequence
@@ -10,6 +9,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from . import _core
+from ._values import is_masked, number_of
 
 PIXEL_TYPES = (
     "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64",
@@ -58,7 +58,7 @@ def array_of(value: Any, name: str) -> np.ndarray:
     if type(value) is np.ndarray:
         return value
     if not is_foreign(value):
-        if np.ma.is_masked(value):
+        if is_masked(value):
             raise ValueError(f"{name}: has masked elements; use .filled(value)")
         try:
             return np.asarray(value)
@@ -73,6 +73,7 @@ def array_of(value: Any, name: str) -> np.ndarray:
 
 def as_array(array: np.ndarray, dtype: Any, copy: bool | None) -> np.ndarray:
     """What `__array__` of something that holds an array returns."""
+    array = array_of(array, "array")
     if copy:
         return np.array(array, dtype=dtype)
     if copy is False and dtype is not None and np.dtype(dtype) != array.dtype:
@@ -113,10 +114,12 @@ def check_samples(name: str, shape: tuple[int, ...], dtype: str) -> None:
 
 def samples_of(value: Any, name: str) -> np.ndarray:
     """Samples of shape (z, y, x) or (z, y, x, c) in C order; copied only if they are not."""
-    if isinstance(value, (str, os.PathLike)):
-        raise ValueError(f"{name}: expected samples, got the name {value!r}; tetwarp.read reads it")
-    if hasattr(value, "dataobj") or hasattr(value, "GetPixelIDTypeAsString"):
-        raise ValueError(f"{name}: expected samples, got an image; tetwarp.volume_from takes it")
+    if type(value) is not np.ndarray:
+        if isinstance(value, (str, os.PathLike)):
+            raise ValueError(
+                f"{name}: expected samples, got the name {value!r}; tetwarp.read reads it")
+        if hasattr(value, "dataobj") or hasattr(value, "GetPixelIDTypeAsString"):
+            raise ValueError(f"{name}: expected samples, got an image; tetwarp.volume_from takes it")
     array = array_of(value, name)
     dtype = array.dtype if array.dtype.isnative else array.dtype.newbyteorder("=")
     is_pixel = dtype in _NATIVE_PIXELS  # whose name takes longer
@@ -128,89 +131,6 @@ def renamed(error: Exception, names: dict[str, str]) -> Exception:
     """An error of the library with the name that the argument has in this package."""
     name, colon, rest = str(error).partition(":")
     return type(error)(f"{names[name]}:{rest}") if colon and name in names else error
-
-
-def _is_unicode(text: str) -> bool:
-    try:
-        text.encode()
-    except UnicodeEncodeError:  # of a name that the system has in another encoding
-        return False
-    return True
-
-
-def _is_text(value: Any) -> bool:
-    """Whether the library takes it as a text: one of Unicode, without a zero, which would end it."""
-    return isinstance(value, str) and "\0" not in value and _is_unicode(value)
-
-
-def word_of(value: Any, name: str) -> str:
-    """A word; which ones there are is checked by the library."""
-    if not _is_text(value):
-        raise ValueError(f"{name}: expected a word, got {value!r}")
-    return value
-
-
-def path_of(value: Any, name: str = "path") -> str:
-    """The name of a file."""
-    path = os.fsdecode(value) if isinstance(value, (bytes, os.PathLike)) else value
-    if not _is_text(path) or not path:
-        raise ValueError(f"{name}: expected the name of a file in UTF-8, got {value!r}")
-    return path
-
-
-def check_callback(value: Any, name: str) -> None:
-    """Raises ValueError for what is neither a function nor None."""
-    if value is not None and not callable(value):
-        raise ValueError(f"{name}: expected a function, got {value!r}")
-
-
-def check_kind(value: Any, kind: type, name: str) -> None:
-    """Raises ValueError for what is not of a class of this package."""
-    if not isinstance(value, kind):
-        raise ValueError(f"{name}: expected a {kind.__name__}, got {type(value).__name__}")
-
-
-def list_of(values: Any, name: str, what: str) -> list[Any]:
-    """The items of a list or of anything that gives them."""
-    try:
-        return list(values)
-    except TypeError:
-        raise ValueError(f"{name}: expected {what}, got {values!r}") from None
-
-
-def number_of(value: Any, name: str) -> float:
-    """A number: no text, and no complex one, whose imaginary part would be lost."""
-    if type(value) is float:
-        return value
-    if isinstance(value, (np.ndarray, np.generic)) and value.ndim == 0:
-        value = value.item()
-    try:
-        if isinstance(value, (np.ndarray, str, bytes, bytearray)):
-            raise TypeError
-        return float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name}: expected a number, got {value!r}") from None
-
-
-def pair_of(value: Any, name: str) -> tuple[float, float]:
-    """Two numbers."""
-    if type(value) is tuple and len(value) == 2 and type(value[0]) is type(value[1]) is float:
-        return value
-    first, second = numbers_of(value, name, 2)
-    return float(first), float(second)
-
-
-def integer_of(value: Any, name: str, most: int = 2**31 - 1) -> int:
-    """A whole number up to `most`, and not below its negative; one with a fraction is refused, not
-    cut.
-    """
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise ValueError(f"{name}: expected a whole number, got {value!r}") from None
-    if not -most <= number <= most:
-        raise ValueError(f"{name}: expected a whole number up to {most}, got {number}")
-    return number
 
 
 def integers_of(value: Any, name: str, dtype: Any = np.int32) -> np.ndarray:
@@ -382,6 +302,14 @@ def numbers_of(value: Any, name: str, count: int | None = None) -> np.ndarray:
     return array
 
 
+def pair_of(value: Any, name: str) -> tuple[float, float]:
+    """Two numbers."""
+    if type(value) is tuple and len(value) == 2 and type(value[0]) is type(value[1]) is float:
+        return value
+    first, second = numbers_of(value, name, 2)
+    return float(first), float(second)
+
+
 def vector_of(value: Any, name: str) -> tuple[float, float, float]:
     """Three numbers x, y, z."""
     if type(value) is tuple and len(value) == 3 and {*map(type, value)} <= {float, int}:
@@ -397,12 +325,16 @@ def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarra
     library its memory, as an array of NumPy.
     """
     shape, dtype = tuple(shape), np.dtype(dtype)
+    if is_torch(value) and value.requires_grad:
+        raise ValueError(f"{name}: expected a tensor that needs no gradient; use .detach()")
     if is_foreign(value):
         check_host(value, name)
         try:
             value = _core.writable_array(value)
         except (TypeError, BufferError, RuntimeError) as error:
             raise ValueError(f"{name}: cannot be written to by DLPack: {error}") from None
+    if is_masked(value):
+        raise ValueError(f"{name}: has masked elements, which would hide what is written")
     if not isinstance(value, np.ndarray):
         raise ValueError(f"{name}: expected an array of {dtype} to write to, of NumPy or by DLPack")
     if value.shape != shape or value.dtype != dtype:

@@ -31,9 +31,9 @@ def autograd_warp(
 
     Parameters
     ----------
-    volume : tensor of shape (z, y, x) or (z, y, x, c)
+    volume : tensor of floats of shape (z, y, x) or (z, y, x, c)
     rest, cells : as in `warp`; arrays
-    deformed : (n, 3) tensor, positions of the nodes
+    deformed : (n, 3) tensor of floats, positions of the nodes
     spacing, origin, direction, affine : of the grid of `volume`, see Grid
     options : the other keywords of WarpOperator: interpolator, outside, intensity, reference, mask,
         threads; intensity ``"conservative"`` has a derivative by the samples only
@@ -59,6 +59,9 @@ def autograd_warp(
     for name, value in (("volume", volume), ("deformed", deformed)):
         if not hasattr(value, "detach"):
             raise ValueError(f"{name}: expected a tensor of PyTorch, got {type(value).__name__}")
+        if not value.is_floating_point():
+            raise ValueError(f"{name}: expected a tensor of floats, which have derivatives, got "
+                             f"{value.dtype}; use .double(), or warp")
     grid = make_grid(tuple(volume.shape[:3]), spacing, origin, direction, affine)
 
     def numbers(tensor: Any) -> np.ndarray:

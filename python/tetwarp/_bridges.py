@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import check_kind, curved_cells_of, nodes_of
+from ._arrays import curved_cells_of, integers_of, nodes_of
 from ._fields import Field
 from ._grid import Grid, reference_grid
 from ._mesh import Mesh, joined_cells
-from ._volume import Volume
+from ._values import check_kind
+from ._volume import Volume, checked_volume, made_volume
 
 
 def package(name: str, function: str, pip: str) -> Any:
@@ -41,9 +42,26 @@ def turned(grid: Grid, signs: np.ndarray) -> Grid:
                 tuple(map(tuple, signs[:, None] * np.array(grid.direction))))
 
 
-def _rows_first(array: np.ndarray) -> np.ndarray:
-    """Axes x and z exchanged; components stay last."""
-    return np.ascontiguousarray(array.swapaxes(0, 2))
+#: XX YY ZZ XY YZ XZ as NIfTI has symmetric matrices, row by row below the diagonal, and back.
+_TO_ROWS, _FROM_ROWS = [0, 3, 1, 5, 4, 2], [0, 2, 5, 1, 4, 3]
+
+
+def _is_symmetric(image: Any) -> bool:
+    """Whether an image of nibabel has symmetric matrices of three rows."""
+    has_intent = len(image.shape) == 5 and image.shape[4] == 6 and hasattr(image.header, "get_intent")
+    return has_intent and image.header.get_intent("code")[0] == 1005
+
+
+def _samples_of_nibabel(image: Any) -> np.ndarray:
+    """Samples (z, y, x) or (z, y, x, c) of an image of one time, a copy."""
+    shape = image.shape
+    if len(shape) > 5 or shape[3:4] not in ((), (1,)):
+        raise ValueError("image: expected one time, components along the fifth axis, got shape "
+                         f"{shape}; image.slicer[:, :, :, n:n+1] is time n")
+    array = np.asarray(image.dataobj).reshape(shape[:3] + shape[4:])
+    if _is_symmetric(image):
+        array = array[..., _FROM_ROWS]
+    return np.array(array.swapaxes(0, 2), order="C")
 
 
 def volume_from(image: Any, *, axes: str) -> Volume:
@@ -51,20 +69,17 @@ def volume_from(image: Any, *, axes: str) -> Volume:
 
     Parameters
     ----------
-    image : a NIfTI image of nibabel, scaled as its header says, or an image of SimpleITK
+    image : a NIfTI image of nibabel of one time, scaled as its header says, or an image of SimpleITK
     axes : of the world that it is brought to: ``"RAS"`` or ``"LPS"``
 
     Raises
     ------
     ValueError
-        `image` is of another kind, or `axes` another word.
+        `image` is of another kind or has several times, or `axes` is another word.
     """
     if hasattr(image, "dataobj"):
         grid = reference_grid(image, "image")
-        array = np.asarray(image.dataobj)
-        if array.ndim == 5 and array.shape[3] == 1:  # vectors of NIfTI
-            array = array[:, :, :, 0]
-        return Volume(_rows_first(array), turned(grid, signs_of(axes, "RAS")))
+        return Volume(_samples_of_nibabel(image), turned(grid, signs_of(axes, "RAS")))
     if hasattr(image, "GetPixelIDTypeAsString"):
         sitk = package("SimpleITK", "volume_from", "SimpleITK")
         grid = turned(reference_grid(image, "image"), signs_of(axes, "LPS"))
@@ -75,7 +90,8 @@ def volume_from(image: Any, *, axes: str) -> Volume:
 
 
 def to_nibabel(volume: Volume, *, axes: str) -> Any:
-    """A Volume as a `Nifti1Image`; `axes` of its world are ``"RAS"`` or ``"LPS"``.
+    """A Volume as a `Nifti1Image`; `axes` of its world are ``"RAS"`` or ``"LPS"``. Components are along
+    the fifth axis, as vectors, or six as symmetric matrices, as `write` has them.
 
     Raises
     ------
@@ -83,10 +99,17 @@ def to_nibabel(volume: Volume, *, axes: str) -> Any:
         nibabel is not installed.
     """
     nibabel = package("nibabel", "to_nibabel", "nibabel")
-    check_kind(volume, Volume, "volume")
+    volume = checked_volume(volume, "volume")
     grid = turned(volume.grid, signs_of(axes, "RAS"))
     array = volume.array.swapaxes(0, 2)
-    return nibabel.Nifti1Image(array, grid.affine, dtype=array.dtype)
+    components = array.shape[3:] if array.shape[3:] != (1,) else ()
+    if components == (6,):
+        array = array[..., _TO_ROWS]
+    shape = array.shape[:3] + (1,) * len(components) + components
+    image = nibabel.Nifti1Image(array.reshape(shape), grid.affine, dtype=array.dtype)
+    if components:
+        image.header.set_intent(*((1005, (3,)) if components == (6,) else (1007,)))
+    return image
 
 
 def _sitk_image(sitk: Any, array: np.ndarray, grid: Grid) -> Any:
@@ -106,7 +129,7 @@ def to_sitk(volume: Volume, *, axes: str) -> Any:
         SimpleITK is not installed.
     """
     sitk = package("SimpleITK", "to_sitk", "SimpleITK")
-    check_kind(volume, Volume, "volume")
+    volume = checked_volume(volume, "volume")
     return _sitk_image(sitk, volume.array, turned(volume.grid, signs_of(axes, "LPS")))
 
 
@@ -123,10 +146,11 @@ def to_sitk_transform(field: Field, *, axes: str) -> Any:
     """
     sitk = package("SimpleITK", "to_sitk_transform", "SimpleITK")
     check_kind(field, Field, "field")
-    if field.values.ndim != 4 or field.values.shape[3] != 3:
-        raise ValueError(f"field: expected displacements, (z, y, x, 3), got {field.values.shape}")
+    values = made_volume("field", field.values, field.grid).array
+    if values.shape[3:] != (3,):
+        raise ValueError(f"field: expected displacements, (z, y, x, 3), got {values.shape}")
     signs = signs_of(axes, "LPS")
-    image = _sitk_image(sitk, field.values * signs, turned(field.grid, signs))
+    image = _sitk_image(sitk, values * signs, turned(field.grid, signs))
     return sitk.DisplacementFieldTransform(image)
 
 
@@ -141,6 +165,7 @@ def to_pyvista(value: Any, deformed: Any = None) -> Any:
     """
     pyvista = package("pyvista", "to_pyvista", "pyvista")
     if isinstance(value, Volume):
+        value = checked_volume(value, "value")
         grid = value.grid
         image = pyvista.ImageData(dimensions=grid.shape[::-1], spacing=grid.spacing,
                                   origin=grid.origin, direction_matrix=np.array(grid.direction))
@@ -206,7 +231,7 @@ def mesh_from(mesh: Any) -> Mesh:
             f"{', '.join(others)}"
         )
     points = nodes_of(mesh.points, "mesh")
-    parts = {name: np.reshape(blocks.get(name, ()), (-1, count)).astype(np.int64)
+    parts = {name: integers_of(blocks.get(name, ()), "mesh", np.int64).reshape(-1, count)
              for name, count in (("tetra", 4), ("tetra10", 10), ("hexahedron", 8))}
     tets, ten = parts["tetra"], parts["tetra10"]
     if len(ten):

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import integer_of, list_of, points_of, triangles_of
+from ._arrays import nodes_of, points_of, triangles_of
+from ._values import flag_of, integer_of, list_of
 
 
 @dataclass(eq=False)
@@ -85,7 +86,7 @@ def certify(
         ends.append(points_of(surface[1], f"{name}: end", len(starts[-1])))
         triangles.append(triangles_of(surface[2], f"{name}: triangles", len(starts[-1])))
     found = _core.certify(
-        starts, ends, triangles, self=bool(self_intersections),
+        starts, ends, triangles, self=flag_of(self_intersections, "self_intersections"),
         most_intervals=integer_of(most_intervals, "most_intervals", 2**63 - 1),
         threads=integer_of(threads, "threads"),
     )
@@ -134,6 +135,7 @@ def find_collisions(
     for number, surface in enumerate(list_of(surfaces, "surfaces", "a list of surfaces")):
         if not isinstance(surface, (tuple, list)) or len(surface) != 2:
             raise ValueError(f"surfaces[{number}]: expected (points, triangles)")
-        still.append((surface[0], surface[0], surface[1]))
+        points = nodes_of(surface[0], f"surfaces[{number}]: points")
+        still.append((points, points, surface[1]))
     found = certify(still, self_intersections=self_intersections, threads=threads)
     return Collisions(found.surfaces, found.triangles)

@@ -9,16 +9,8 @@ from typing import Any, Callable, Iterable, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import (
-    array_of,
-    check_callback,
-    check_kind,
-    integer_of,
-    integers_of,
-    number_of,
-    numbers_of,
-    word_of,
-)
+from ._arrays import array_of, integers_of, numbers_of
+from ._values import check_callback, check_kind, integer_of, number_of, word_of
 
 
 class Csr(NamedTuple):
@@ -45,12 +37,25 @@ class Csr(NamedTuple):
         return f"Csr({self.shape[0]} x {self.shape[1]}, {len(self.data)} entries)"
 
 
+def _is_csr(value: Any) -> bool:
+    """Whether it is a tuple of the members of a Csr, not four rows of numbers."""
+    if isinstance(value, Csr):
+        return True
+    if not isinstance(value, tuple) or len(value) != 4:
+        return False
+    try:
+        sizes = {len(part) for part in value}
+    except TypeError:  # csr_of() names the member
+        return True
+    return len(sizes) > 1 or sizes == {2}
+
+
 def csr_of(value: Any, name: str) -> Csr:
     """A matrix of SciPy, a Csr or tuple of its members, or a dense array."""
     if hasattr(value, "tocsr") and not isinstance(value, Csr):
         value = value.tocsr()
         value = Csr(value.data, value.indices, value.indptr, value.shape)
-    if isinstance(value, tuple) and len(value) == 4:
+    if _is_csr(value):
         data, indices, indptr, shape = value
     else:
         dense = array_of(value, name)
@@ -188,20 +193,23 @@ class ContactProblem:
 
     @property
     def contact_count(self) -> int:
-        return 0 if self.friction is None else len(self.friction)
+        return 0 if self.friction is None else int(np.size(self.friction))
 
     def __repr__(self) -> str:
         form = "local" if self.delassus is not None else "global"
         return f"ContactProblem({self.contact_count} contacts, {form} form)"
 
     def _core(self) -> dict[str, Any]:
+        """The members that are given. They can be set at any time: they are checked here again."""
         def plain(value: Any) -> Any:
             if isinstance(value, dict):
                 return {key: plain(part) for key, part in value.items()}
             return tuple(value) if isinstance(value, Csr) else value
 
-        given = {f.name: getattr(self, f.name) for f in fields(self)}
-        return {name: plain(value) for name, value in given.items() if value is not None}
+        names = [f.name for f in fields(ContactProblem)]
+        given = ContactProblem(*(getattr(self, name) for name in names))
+        members = {name: plain(getattr(given, name)) for name in names}
+        return {name: value for name, value in members.items() if value is not None}
 
 
 @dataclass(eq=False)
@@ -279,12 +287,13 @@ class ContactSolver:
     ) -> ContactSolution:
         """Solves one problem; see solve_contacts()."""
         check_kind(problem, ContactProblem, "problem")
-        rows = [m.shape[0] for m in (problem.jacobian, problem.delassus) if m is not None]
-        if problem.friction is None and any(rows):
+        members = problem._core()
+        rows = [members[name][3][0] for name in ("jacobian", "delassus") if name in members]
+        if "friction" not in members and any(rows):
             raise ValueError("friction: expected one number per contact")
         check_callback(progress, "progress")
         impulse, velocity, body_velocity, bilateral, rolling, text = self._solver.solve(
-            problem._core(), progress
+            members, progress
         )
         report = json.loads(text)
         return ContactSolution(

@@ -8,8 +8,15 @@ from typing import Any, Sequence
 
 from . import _core
 from ._arrays import check_host, check_samples, describe, is_foreign, is_torch
+from ._values import integer_of
 
 _CUDA = (2, 13)  # numbers of DLPack: plain and managed memory
+
+
+def available_backends(device: int = 0) -> list[dict[str, Any]]:
+    """A dict per back end, of the CUDA device of a number: backend, usable, device, and the reason why
+    it is not usable."""
+    return list(_core.available_backends(integer_of(device, "device")))
 
 
 def on_device(value: Any) -> bool:

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import check_kind, list_of
 from ._bridges import package, signs_of, turned
 from ._grid import Grid
-from ._volume import Volume
+from ._values import check_kind, list_of
+from ._volume import Volume, checked_volume
 
 _RT_DOSE = "1.2.840.10008.5.1.4.1.1.481.2"
 #: Of patient, study and frame of reference, which an object made of another one shares with it.
@@ -107,10 +107,19 @@ def _grid_of(dataset: Any, count: int, step: float, origin: np.ndarray) -> Grid:
                 tuple(origin), tuple(map(tuple, _axes_of(dataset))))
 
 
+def _number_in(dataset: Any, name: str, default: float) -> float:
+    """A number of a dataset; one without a value is as good as none."""
+    value = dataset.get(name)
+    return default if value is None or value == "" else float(value)
+
+
 def _rescaled(datasets: list[Any]) -> np.ndarray:
     """Samples with slope and intercept: integers where these are, else float32."""
-    slopes = [float(d.get("RescaleSlope") or 1) for d in datasets]
-    shifts = [float(d.get("RescaleIntercept") or 0) for d in datasets]
+    slopes = [_number_in(d, "RescaleSlope", 1.0) for d in datasets]
+    shifts = [_number_in(d, "RescaleIntercept", 0.0) for d in datasets]
+    if not np.isfinite(slopes + shifts).all() or 0 in slopes:
+        raise ValueError("source: has a rescale slope or intercept that is no finite number, or a "
+                         "slope of 0")
     pixels = [d.pixel_array for d in datasets]
     if all(s == 1 for s in slopes) and all(s.is_integer() for s in shifts):
         wide = np.stack([p.astype(np.int64) + int(s) for p, s in zip(pixels, shifts)])
@@ -218,7 +227,7 @@ def to_rtdose(volume: Volume, like: Any, *, axes: str) -> Any:
         pydicom is not installed.
     """
     pydicom = package("pydicom", "to_rtdose", "pydicom")
-    check_kind(volume, Volume, "volume")
+    volume = checked_volume(volume, "volume")
     check_kind(like, pydicom.Dataset, "like")
     dose = np.asarray(volume.array, np.float64)
     if dose.ndim != 3 or not np.isfinite(dose).all() or dose.min() < 0:

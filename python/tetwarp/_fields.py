@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from . import _core
-from ._arrays import as_array, curved_cells_of, maker_of, nodes_of, number_of, points_of
+from ._arrays import as_array, curved_cells_of, maker_of, nodes_of, points_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._result import WarpResult
+from ._values import flag_of, number_of, warn
 from ._volume import Volume
 from ._warp import Warper
 
@@ -23,7 +23,8 @@ _CONVENTIONS = {"resampling": "displacement", "modeling": "forward"}
 class Field:
     """Numbers of a deformation at the voxels of a grid; ``numpy.asarray(field)`` is `values`.
 
-    values : (z, y, x) or (z, y, x, c) float32; 0 where `mask` is False
+    values : (z, y, x) or (z, y, x, c) float32; 0 where `mask` is False, but see `outside` of
+        displacement_field()
     mask : (z, y, x) bool, where a cell covers the voxel
     grid : of both
     name : of the array in files
@@ -57,8 +58,9 @@ def _outputs_on(
     grid: Grid, rest: Any, cells: Cells, deformed: Any, names: tuple[str, ...], options: Any
 ) -> WarpResult:
     """Outputs of a warp other than its volume, which is one byte per voxel."""
+    allowed = ("outside", "falloff") if "displacement" in names else ()
     for name in options:
-        if name not in ("backend", "device", "threads"):
+        if name not in ("backend", "device", "threads", *allowed):
             raise TypeError(f"unexpected keyword argument {name!r}")
     shape = grid.shape if "forward" in names else (1, 1, 1)
     samples = np.zeros(shape, np.uint8)
@@ -100,7 +102,8 @@ def displacement_field(
     convention : ``"resampling"``: from the voxel of the deformed image to the rest position, as
         image resamplers take it; ``"modeling"``: from the voxel at rest to the deformed position,
         not of tetrahedra of ten nodes
-    options : backend, device, threads, as of Warper
+    options : backend, device, threads, as of Warper; for ``"resampling"`` also outside and falloff:
+        ``"nearest"`` and ``"falloff"`` move voxels that no cell covers
 
     Returns
     -------
@@ -117,6 +120,9 @@ def displacement_field(
         raise ValueError(f"convention: expected resampling or modeling, got {convention!r}")
     grid = _grid_of(reference, shape, spacing, origin, direction, affine)
     name = _CONVENTIONS[convention]
+    for given in ("outside", "falloff"):
+        if given in options and name == "forward":
+            raise ValueError(f'{given}: is for convention="resampling"')
     return _field(name, f"tetwarp_{name}", grid, rest, cells, deformed, options)
 
 
@@ -257,15 +263,16 @@ def transform_points(
     >>> transform_points([(0.25, 0.25, 0.25)], tet, [(0, 1, 2, 3)], 2 * tet)
     array([[0.5, 0.5, 0.5]])
     """
-    where = points_of(points, "points")
+    where, with_owners = points_of(points, "points"), flag_of(return_owners, "return_owners")
     start = nodes_of(rest, "rest")
     end = nodes_of(deformed, "deformed", len(start))
     parts = curved_cells_of(cells, "cells", len(start))
     grid = None if reference is None else reference_grid(reference)._core()
-    moved, owners, straightened = _core.map_points(where, grid, start, *parts, end, bool(inverse))
+    moved, owners, straightened = _core.map_points(where, grid, start, *parts, end,
+                                                 flag_of(inverse, "inverse"))
     if straightened:
-        warnings.warn(f"{straightened} of {len(where)} points are mapped by the straight tetrahedron "
-                      "of their cell, whose curved map has no inverse there", RuntimeWarning, stacklevel=2)
+        warn(f"{straightened} of {len(where)} points are mapped by the straight tetrahedron of their "
+             "cell, whose curved map has no inverse there")
     moved[owners < 0] = number_of(default_value, "default_value")
     make = maker_of(points)
-    return (make(moved), make(owners)) if return_owners else make(moved)
+    return (make(moved), make(owners)) if with_owners else make(moved)

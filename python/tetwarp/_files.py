@@ -8,26 +8,26 @@ from typing import Any, Iterator, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import (
-    curved_cells_of,
-    integer_of,
-    list_of,
-    nodes_of,
-    numbers_of,
-    path_of,
-    samples_of,
-    triangles_of,
-    word_of,
-)
+from ._arrays import curved_cells_of, nodes_of, numbers_of, samples_of, triangles_of
 from ._contact import ContactProblem
 from ._fields import Field
 from ._grid import Grid, grid_from_core, reference_grid
 from ._mesh import Mesh, Surface, joined_cells, split_ten_nodes
 from ._packages import MeshioFile, check_default, read_image, read_surface
 from ._result import WarpResult
-from ._volume import Volume
+from ._values import flag_of, integer_of, list_of, path_of, word_of
+from ._volume import Volume, checked_volume, made_volume
 
+#: Ends of names of files that are packed by the level that `compress` gives.
+_PACKED = (".vtkhdf", ".hdf", ".h5", ".nii.gz", ".nrrd", ".mha", ".mhd", ".mgz")
 _ITK_FIELDS = ("tetwarp_displacement", "tetwarp_forward")
+
+
+def _check_unused(owner: str, given: dict[str, bool]) -> None:
+    """Raises ValueError for an argument that would have no effect."""
+    for name, is_given in given.items():
+        if is_given:
+            raise ValueError(f"{name}: has no effect on a {owner}; leave it out")
 
 
 class MeshFile:
@@ -55,25 +55,29 @@ class MeshFile:
         if word_of(ten_nodes, "ten_nodes") not in ("curved", "split"):
             raise ValueError(f"ten_nodes: expected curved or split, got {ten_nodes!r}")
         self._file: Any
+        turns = word_of(axes, "axes") != "ras"
+        if turns and not _core.has_mesh_extension(name) and _core.kind_of(name) == "mesh":
+            _check_unused("mesh of VTKHDF", {"axes": turns})
         try:
-            self._file = _core.MeshFile(name, step, word_of(axes, "axes"), ten_nodes == "curved")
+            self._file = _core.MeshFile(name, step, axes, ten_nodes == "curved")
         except _core.MissingLibrary as error:
             self._file = MeshioFile(name, step, axes, error)
         points, *parts = self._file.mesh()
         cells = joined_cells(*parts)
         self.mesh = Mesh(points, split_ten_nodes(cells) if ten_nodes == "split" else cells)
         self.times: list[float] = list(self._file.times)
+        self._count = len(self.times)
         self.not_read: list[str] = list(self._file.not_read)
 
     def step(self, number: int) -> np.ndarray:
         """Deformed positions (n, 3) of a step; negative numbers count from the end."""
-        count, number = len(self.times), integer_of(number, "number")
+        count, number = self._count, integer_of(number, "number")
         if not -count <= number < count:
             raise ValueError(f"number: expected a step from 0 to {count - 1}, got {number}")
         return self._file.read_step(number % count)
 
     def __len__(self) -> int:
-        return len(self.times)
+        return self._count
 
     def __iter__(self) -> Iterator[np.ndarray]:
         return (self.step(number) for number in range(len(self)))
@@ -110,13 +114,6 @@ def read_header(path: Any) -> VolumeHeader:
     return VolumeHeader(**{**header, "grid": grid_from_core(header["grid"])})
 
 
-def _check_unused(owner: str, given: dict[str, bool]) -> None:
-    """Raises ValueError for an argument that would have no effect."""
-    for name, is_given in given.items():
-        if is_given:
-            raise ValueError(f"{name}: has no effect on a {owner}; leave it out")
-
-
 def read(
     path: Any, *, array: str = "", step: int = 0, axes: str = "ras", labels: bool = False,
     ten_nodes: str = "curved",
@@ -129,8 +126,8 @@ def read(
         surface (VTKHDF, .stl, .ply, .obj, .vtp) or contact problem (FCLIB)
     array : of a volume file; empty: its active scalars
     step : of a volume file
-    axes : ``"ras"`` or ``"lps"``, of the components of images and of the nodes of meshes that are
-        not VTKHDF
+    axes : ``"ras"`` or ``"lps"``, of vectors and tensors of NIfTI images and of the nodes of meshes
+        that are not VTKHDF; ``"lps"`` is refused where it would turn nothing
     labels : floats hold labels: they are read as int32, other numbers are an error
     ten_nodes : ``"curved"``: tetrahedra of ten nodes stay what they are, cells of shape (m, 10);
         ``"split"``: they become eight straight ones, see split_ten_nodes()
@@ -154,7 +151,8 @@ def read(
     name, number = path_of(path), integer_of(step, "step", 2**63 - 1)
     if not isinstance(array, str):
         raise ValueError(f"array: expected a name, got {array!r}")
-    of_volumes = {"array": array != "", "step": number != 0, "labels": labels}
+    are_labels = flag_of(labels, "labels")
+    of_volumes = {"array": array != "", "step": number != 0, "labels": are_labels}
     turns = {"axes": word_of(axes, "axes") != "ras"}
     of_meshes = {"ten_nodes": word_of(ten_nodes, "ten_nodes") != "curved"}
     if _core.has_mesh_extension(name):
@@ -174,14 +172,16 @@ def read(
             return ContactProblem(**_core.read_contact_problem(name))
         _check_unused("volume", of_meshes)
         samples, grid, read_name, nifti = _core.read_volume(
-            name, array, number, axes, bool(labels))
+            name, array, number, axes, are_labels)
     except _core.MissingLibrary as error:
         if is_surface:
             return read_surface(name, error)
         check_default(name, "step", step, 0)
         check_default(name, "axes", axes, "ras")
-        check_default(name, "labels", labels, False)
+        check_default(name, "labels", are_labels, False)
         return read_image(name, array, error)
+    if kind != "NIfTI image":  # of which the library refuses scalars
+        _check_unused("volume that is no NIfTI image", turns)
     return Volume(samples, grid_from_core(grid), read_name, nifti)
 
 
@@ -198,8 +198,8 @@ def _volume_of(value: Any, grid: Grid | None, where: str) -> Volume:
     if isinstance(value, (Field, Volume)):
         if grid is not None and grid != value.grid:
             raise ValueError(f"grid: {where} has one; leave it out")
-        return value if isinstance(value, Volume) else Volume(
-            value.values, value.grid, value.name)
+        return checked_volume(value, where) if isinstance(value, Volume) else made_volume(
+            where, value.values, value.grid, value.name)
     samples = samples_of(value, where)
     if grid is None:
         raise ValueError(f"grid: an array needs its grid; {where} is one")
@@ -208,6 +208,10 @@ def _volume_of(value: Any, grid: Grid | None, where: str) -> Volume:
 
 def _volumes_of(result: WarpResult) -> list[Volume]:
     """All arrays of a warp, with the names that the command gives them."""
+    if not len(result.volumes) == len(result.names) == len(result.nifti):
+        raise ValueError(f"value: expected a name and a header of NIfTI or None for each of "
+                         f"{len(result.volumes)} volumes, got {len(result.names)} and "
+                         f"{len(result.nifti)}")
     volumes = [
         Volume(array, result.grid, name, nifti)
         for array, name, nifti in zip(result.volumes, result.names, result.nifti)
@@ -224,8 +228,9 @@ def _write_volumes(
     if isinstance(value, WarpResult):
         _check_unused("result of a warp, which has one", {"grid": grid is not None})
         value = _volumes_of(value)
-    if path.endswith(".nii"):
-        _check_unused("volume of .nii, which is not packed", {"compress": compress != 0})
+    if not path.lower().endswith(_PACKED):
+        ending = path[path.rfind("."):]
+        _check_unused(f"volume of {ending}, which is not packed", {"compress": compress != 0})
     many = list(value) if isinstance(value, (list, tuple)) else [value]
     if not many:
         raise ValueError("value: expected at least one volume")
@@ -293,7 +298,8 @@ def write(
     grid : of samples
     times : of several volumes: they are the steps of one array; of a mesh: one per step
     deformed : of a mesh: node positions (n, 3) per step
-    compress : 0 to 9, deflate level of volumes
+    compress : 0 to 9, deflate level of volumes; of ``.nii``, ``.mgh`` and ``.vti``, which are not
+        packed, 0
 
     Raises
     ------

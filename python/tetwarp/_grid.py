@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import integer_of, numbers_of, vector_of
+from ._arrays import numbers_of, vector_of
+from ._values import integer_of, is_masked
 
 _UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _UNIT_ROWS = np.ravel(_UNIT)
@@ -18,6 +19,8 @@ _UNIT_ROWS = np.ravel(_UNIT)
 
 def shape_of(value: Any) -> tuple[int, int, int]:
     """Voxels along z, y, x."""
+    if is_masked(value):
+        raise ValueError("shape: has masked elements; use .filled(value)")
     numbers = value if type(value) is tuple else np.ravel(np.asarray(value, object))
     shape: Any = tuple([integer_of(n, "shape") for n in numbers])
     if len(shape) != 3:

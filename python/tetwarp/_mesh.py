@@ -7,12 +7,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import curved_cells_of, integer_of, nodes_of, number_of, vector_of, word_of
+from ._arrays import curved_cells_of, nodes_of, vector_of
+from ._values import exact_of, flag_of, integer_of, number_of, word_of
 from ._volume import volume_of
 
 Cells = Any  # (m, 4) or (m, 10), (k, 8), or a pair of both
 
 _AXES = {"x": 0, "y": 1, "z": 2}
+#: Arguments of deform(), their values where they are not given, and the kinds that use them.
+_USED = {"amount": (1.0, "twist bend swim random rotate"), "axis": ("z", "twist bend swim rotate"),
+         "seed": (1, "random"), "offset": ((0.0, 0.0, 0.0), "translate")}
 
 
 class Mesh(NamedTuple):
@@ -93,7 +97,7 @@ def lattice_mesh(
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
     made = _core.lattice_mesh(
         source.array, source.grid._core(), integer_of(cells, "cells"),
-        None if threshold is None else number_of(threshold, "threshold"), bool(hexahedra),
+        None if threshold is None else exact_of(threshold, "threshold"), flag_of(hexahedra, "hexahedra"),
     )
     return Mesh(*made)
 
@@ -120,7 +124,7 @@ def deform(
         random
     axis : ``"x"``, ``"y"`` or ``"z"``, of twist, bend, swim and rotate
     seed : of random
-    offset : (x, y, z), of translate [world]
+    offset : (x, y, z), of translate [world]. What a kind does not use is refused
     time : 0 (at rest) to 1 (the full amount)
 
     Returns
@@ -135,12 +139,17 @@ def deform(
     tets, hexes, _ = curved_cells_of(cells, "cells", len(nodes))
     if word_of(axis, "axis") not in _AXES:
         raise ValueError(f"axis: expected x, y or z, got {axis!r}")
-    if integer_of(seed, "seed", 2**64 - 1) < 0:
+    seed = integer_of(seed, "seed", 2**64 - 1)
+    if seed < 0:
         raise ValueError(f"seed: expected a number from 0 to 2^64 - 1, got {seed}")
-    return np.asarray(_core.deform(
-        nodes, tets, hexes, word_of(kind, "kind"), number_of(amount, "amount"), _AXES[axis],
-        integer_of(seed, "seed", 2**64 - 1), vector_of(offset, "offset"), number_of(time, "time"),
-    ))
+    size, way = number_of(amount, "amount"), vector_of(offset, "offset")
+    moved = _core.deform(nodes, tets, hexes, word_of(kind, "kind"), size, _AXES[axis], seed, way,
+                         number_of(time, "time"))
+    for name, value in {"amount": size, "axis": axis, "seed": seed, "offset": way}.items():
+        default, kinds = _USED[name]
+        if value != default and kind not in kinds.split():
+            raise ValueError(f"{name}: has no effect on kind {kind!r}; leave it out")
+    return np.asarray(moved)
 
 
 def boundary_surface(points: Any, cells: Cells) -> Surface:
@@ -196,7 +205,7 @@ def isosurface(
     """
     source = volume_of(volume, "volume", spacing, origin, direction, affine)
     about = None if triangles is None else integer_of(triangles, "triangles", 2**63 - 1)
-    made = _core.isosurface(source.array, source.grid._core(), number_of(value, "value"), about)
+    made = _core.isosurface(source.array, source.grid._core(), exact_of(value, "value"), about)
     return Surface(*made)
 
 

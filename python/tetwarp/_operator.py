@@ -12,25 +12,26 @@ from ._arrays import (
     cells_of,
     describe,
     floats_of,
-    integer_of,
+    is_foreign,
     maker_of,
     nodes_of,
     out_of,
     renamed,
-    word_of,
 )
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
+from ._values import integer_of, word_of
 
 _NO_MASK = np.empty(0, np.uint8)
 
 
 def _source_grid(source: Any, spacing: Any, origin: Any, direction: Any, affine: Any) -> Grid:
     """The grid of a Grid, of what has one, or of an array with the usual keywords."""
-    if isinstance(source, np.ndarray):
-        if source.ndim not in (3, 4):
-            raise ValueError(f"source: expected shape (z, y, x) or (z, y, x, c), got {source.shape}")
-        return make_grid(source.shape[:3], spacing, origin, direction, affine)
+    if isinstance(source, (np.ndarray, list, tuple)) or is_foreign(source):
+        shape = tuple(source.shape if is_foreign(source) else array_of(source, "source").shape)
+        if len(shape) not in (3, 4):
+            raise ValueError(f"source: expected shape (z, y, x) or (z, y, x, c), got {shape}")
+        return make_grid(shape[:3], spacing, origin, direction, affine)
     if any(x is not None for x in (spacing, origin, direction, affine)):
         raise ValueError("source: it has a grid; leave out spacing, origin, direction and affine")
     return reference_grid(source, "source")
@@ -163,11 +164,11 @@ class WarpOperator:
 
     def matvec(self, x: Any) -> np.ndarray:
         """``W x`` of flat arrays, for SciPy."""
-        return self.forward(np.reshape(x, self._source.shape)).reshape(-1)
+        return self.forward(array_of(x, "x").reshape(self._source.shape)).reshape(-1)
 
     def rmatvec(self, y: Any) -> np.ndarray:
         """``W.T y`` of flat arrays, for SciPy."""
-        return self.adjoint(np.reshape(y, self._output.shape)).reshape(-1)
+        return self.adjoint(array_of(y, "y").reshape(self._output.shape)).reshape(-1)
 
     def node_gradient(self, x: Any, y: Any) -> np.ndarray:
         """The derivative of ``sum(y * W x)`` by `deformed`, shape (n, 3), with the owners of voxels

@@ -13,7 +13,7 @@ from ._arrays import curved_cells_of
 from ._bridges import mesh_from
 from ._dicom import read_dicom
 from ._grid import Grid
-from ._mesh import Surface
+from ._mesh import Mesh, Surface, joined_cells
 from ._volume import Volume
 
 
@@ -41,6 +41,16 @@ def check_default(path: str, name: str, value: Any, default: Any) -> None:
                             f"without these it is {default!r}")
 
 
+def _without_copies(mesh: Mesh) -> Mesh:
+    """The mesh without cells that are there twice, as tetwarp-read reads it."""
+    points, cells = mesh
+    tets, hexes, mids = curved_cells_of(cells, "cells", len(points))
+    first_tets, first_hexes = _core.first_cells(points, tets, hexes, mids)
+    is_first = first_tets.view(bool)
+    return Mesh(points, joined_cells(tets[is_first], hexes[first_hexes.view(bool)],
+                                     mids[is_first] if len(mids) else mids))
+
+
 class MeshioFile:
     """A mesh file by meshio, with the members of _core.MeshFile: at most one step, of the point array
     `displacement`.
@@ -50,7 +60,7 @@ class MeshioFile:
         check_default(path, "rest_step", rest_step, 0)
         read = _meshio_mesh(path, error)
         try:
-            self._mesh = mesh_from(read)
+            self._mesh = _without_copies(mesh_from(read))
         except ValueError as reason:
             raise _core.IoError(f"{path}: {reason}") from None
         self._turn = np.array((-1.0, -1, 1) if axes == "lps" else (1.0, 1, 1))
@@ -74,15 +84,31 @@ class MeshioFile:
         return (self._mesh.points + self._shift) * self._turn
 
 
+def _joined_seams(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Triangles whose points on edges of a single triangle are joined where they are equal, as
+    tetwarp-read does it.
+    """
+    edges = np.sort(triangles[:, [(0, 1), (1, 2), (2, 0)]].reshape(-1, 2))
+    unique, uses = np.unique(edges, axis=0, return_counts=True)
+    seam = np.unique(unique[uses == 1])
+    seam = seam[np.isfinite(points[seam]).all(axis=1)]
+    joined = np.arange(len(points))
+    _, first, place = np.unique(points[seam] + 0.0, axis=0, return_index=True, return_inverse=True)
+    joined[seam] = seam[first[place.reshape(-1)]]
+    return joined[triangles]
+
+
 def read_surface(path: str, error: Exception) -> Surface:
-    """The triangles of a file by meshio; points at one place are joined."""
+    """The triangles of a file by meshio, with seams joined and repeated ones left out."""
     read = _meshio_mesh(path, error)
     others = sorted(set(read.cells_dict) - {"triangle", "line", "vertex"})
     if others or "triangle" not in read.cells_dict:
         raise _core.IoError(f"{path}: expected triangles, found {', '.join(others) or 'none'}")
-    points, places = np.unique(np.asarray(read.points, float), axis=0, return_inverse=True)
-    triangles = places.reshape(-1)[read.cells_dict["triangle"]]
-    return Surface(points, triangles.astype(np.int32))
+    points = np.asarray(read.points, float)
+    triangles = _joined_seams(points, read.cells_dict["triangle"]).astype(np.int32)
+    triangles = triangles[_core.first_triangles(points, triangles).view(bool)]
+    used, places = np.unique(triangles, return_inverse=True)
+    return Surface(points[used], places.reshape(-1, 3).astype(np.int32))
 
 
 def read_image(path: str, array: str, error: _core.MissingLibrary) -> Volume:

@@ -11,9 +11,10 @@ from typing import Any, Callable, Iterator, Union
 import numpy as np
 
 from . import _core
-from ._arrays import check_callback, integer_of, number_of, path_of, vector_of, word_of
+from ._arrays import vector_of
 from ._grid import grid_from_core
 from ._mesh import Mesh, Surface
+from ._values import check_callback, flag_of, integer_of, is_masked, number_of, path_of, word_of
 from ._volume import Volume
 
 BodyName = Union[str, int]
@@ -69,11 +70,33 @@ class Contacts:
 
 def _plain(value: Any) -> Any:
     """Arrays and numbers of NumPy in a scene, for JSON."""
+    if is_masked(value):
+        raise TypeError("masked elements are no values of JSON; use .filled(value)")
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     raise TypeError(f"{type(value).__name__} is no value of JSON")
+
+
+def _check_finite_numbers(value: Any, key: str) -> None:
+    """Raises ValueError for a number that JSON does not have, naming its key."""
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            _check_finite_numbers(inner, f"{key}.{name}" if key else f"{name}")
+    elif isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim):
+        for number, inner in enumerate(value):
+            _check_finite_numbers(inner, f"{key}[{number}]")
+    elif isinstance(value, (float, np.floating)) and not np.isfinite(value):
+        raise ValueError(f"{key}: expected a finite number, got {value}")
+
+
+def _move_of(value: Any, name: str) -> tuple[float, float, float]:
+    """Three finite numbers."""
+    vector = vector_of(value, name)
+    if not np.isfinite(vector).all():
+        raise ValueError(f"{name}: expected three finite numbers, got {vector}")
+    return vector
 
 
 def shipped_scenes() -> list[str]:
@@ -130,21 +153,24 @@ class Simulator:
         self,
         scene: Any,
         *,
-        folder: Any = "",
+        folder: Any = None,
         backend: str = "auto",
         device: int = 0,
         threads: int = 0,
         untangle: bool = False,
         max_step_seconds: float = float("inf"),
     ) -> None:
+        is_current = folder is None or (isinstance(folder, str) and not folder)
+        where = "" if is_current else path_of(folder, "folder")
         if isinstance(scene, dict):
             try:
+                _check_finite_numbers(scene, "")
                 file, text = "scene", json.dumps(scene, default=_plain, allow_nan=False)
             except (TypeError, ValueError, RecursionError) as error:
                 raise ValueError(f"scene: {error}") from None
         elif isinstance(scene, (str, os.PathLike)):
             file, text = path_of(scene, "scene"), ""
-            if folder:
+            if where:
                 raise ValueError("folder: is for a scene in a dict; names in a file are relative to "
                                  "it")
         else:
@@ -152,12 +178,12 @@ class Simulator:
                 f"scene: expected a dict or the path of a file, got {type(scene).__name__}"
             )
         self._simulator = _core.Simulator(
-            file, text, path_of(folder, "folder") if folder else "", backend=word_of(backend, "backend"),
-            device=integer_of(device, "device"),
-            threads=integer_of(threads, "threads"), untangle=bool(untangle),
+            file, text, where, backend=word_of(backend, "backend"),
+            device=integer_of(device, "device"), threads=integer_of(threads, "threads"),
+            untangle=flag_of(untangle, "untangle"),
             max_step_seconds=number_of(max_step_seconds, "max_step_seconds"),
         )
-        self.names: list[str] = list(self._simulator.names)
+        self._names = tuple(self._simulator.names)
 
     def step(
         self,
@@ -231,6 +257,11 @@ class Simulator:
         return self._simulator.backend
 
     @property
+    def names(self) -> list[str]:
+        """Names of the bodies, by number."""
+        return list(self._names)
+
+    @property
     def obstacle_names(self) -> list[str]:
         """Names of the obstacles, which contacts number after the bodies."""
         return list(self._simulator.obstacle_names)
@@ -296,7 +327,7 @@ class Simulator:
         ValueError naming what is wrong."""
         self._simulator.add_handle(
             word_of(name, "name"),
-            self.names[self._index(body)],
+            self._names[self._index(body)],
             vector_of(center, "center"),
             number_of(radius, "radius"),
             number_of(stiffness, "stiffness"),
@@ -305,7 +336,7 @@ class Simulator:
 
     def move_handle(self, name: str, displacement: Any) -> None:
         """Moves the anchors of a handle from where they started, instead of its path [m]."""
-        self._simulator.move_handle(word_of(name, "name"), vector_of(displacement, "displacement"))
+        self._simulator.move_handle(word_of(name, "name"), _move_of(displacement, "displacement"))
 
     def release_handle(self, name: str) -> None:
         """The springs of a handle let go, until it is moved again."""
@@ -314,8 +345,8 @@ class Simulator:
     def move_script(self, name: str, displacement: Any, axis_angle: Any = (0, 0, 0)) -> None:
         """The pose of a scripted body or obstacle relative to its start [m, rad]."""
         self._simulator.move_script(
-            word_of(name, "name"), vector_of(displacement, "displacement"),
-            vector_of(axis_angle, "axis_angle"),
+            word_of(name, "name"), _move_of(displacement, "displacement"),
+            _move_of(axis_angle, "axis_angle"),
         )
 
     def checkpoint(self) -> bytes:
@@ -330,16 +361,16 @@ class Simulator:
 
     def __repr__(self) -> str:
         return (
-            f"Simulator({len(self.names)} bodies, step {self.step_index} of {self.step_count}, "
+            f"Simulator({len(self._names)} bodies, step {self.step_index} of {self.step_count}, "
             f"time {self.time:.6g} s)"
         )
 
     def _index(self, body: BodyName) -> int:
         if isinstance(body, str):
-            if body not in self.names:
-                raise ValueError(f"body: {body!r} is not one of {', '.join(self.names)}")
-            return self.names.index(body)
+            if body not in self._names:
+                raise ValueError(f"body: {body!r} is not one of {', '.join(self._names)}")
+            return self._names.index(body)
         index = integer_of(body, "body")
-        if not 0 <= index < len(self.names):
-            raise ValueError(f"body: expected 0 to {len(self.names) - 1}, got {body}")
+        if not 0 <= index < len(self._names):
+            raise ValueError(f"body: expected 0 to {len(self._names) - 1}, got {body}")
         return index

@@ -8,19 +8,9 @@ from typing import Any, NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._arrays import (
-    array_of,
-    check_kind,
-    in_order,
-    integer_of,
-    integers_of,
-    list_of,
-    number_of,
-    numbers_of,
-    points_of,
-    word_of,
-)
+from ._arrays import array_of, in_order, integers_of, numbers_of, points_of
 from ._contact import ContactProblem, ContactSolution
+from ._values import check_kind, integer_of, list_of, number_of, word_of
 
 _MATERIAL = (
     "friction", "stiffness", "tangential_stiffness", "energy", "viscosity", "bonding_rate",
@@ -59,10 +49,8 @@ def _bodies_of(bodies: Sequence[Any]) -> list[np.ndarray]:
     places = []
     for number, body in enumerate(list_of(bodies, "bodies", "a list of bodies")):
         name = f"bodies[{number}]"
-        is_pair = isinstance(body, list) and len(body) == 2 and np.size(body[1]) == 4
-        if isinstance(body, tuple) or is_pair:
-            if len(body) != 2:
-                raise ValueError(f"{name}: expected (position, rotation) or vertices (n, 3)")
+        is_two = isinstance(body, (tuple, list)) and len(body) == 2
+        if is_two and (isinstance(body, tuple) or np.size(body[1]) == 4):
             position = numbers_of(body[0], f"{name}: position", 3)
             rotation = numbers_of(body[1], f"{name}: rotation w, x, y, z", 4)
             places.append(np.concatenate([position, rotation]))
@@ -297,12 +285,12 @@ class ContactTracker:
             no step has begun.
         """
         check_kind(problem, ContactProblem, "problem")
-        filled = self._tracker.fill()
+        filled = replace(problem, **self._tracker.fill())
         rows = 3 * (self._count or 0)
-        if problem.jacobian is not None and problem.jacobian.shape[0] != rows:
+        if filled.jacobian is not None and filled.jacobian.shape[0] != rows:
             raise ValueError(f"problem: expected a jacobian of {rows} rows, 3 per contact of the "
-                             f"step, got {problem.jacobian.shape[0]}")
-        return replace(problem, **filled)
+                             f"step, got {filled.jacobian.shape[0]}")
+        return filled
 
     def end_step(
         self, solution: ContactSolution | np.ndarray, bodies: Sequence[Any], *, velocity: Any = None
@@ -327,9 +315,11 @@ class ContactTracker:
                 raise ValueError("velocity: the solution has its own; leave it out")
             impulse, velocity = solution.impulse, solution.velocity
         else:
-            impulse = solution
-            velocity = np.zeros(np.shape(impulse)) if velocity is None else velocity
-        count = len(impulse) if self._count is None else self._count
+            impulse = array_of(solution, "solution: impulse")
+            velocity = np.zeros(impulse.shape) if velocity is None else velocity
+        count = self._count
+        if count is None:  # the library refuses it
+            count = impulse.shape[0] if np.ndim(impulse) else 0
         impulse = _column_of(impulse, "solution: impulse", count, 3, float)
         velocity = _column_of(velocity, "velocity", count, 3, float)
         step = self._tracker.end_step(impulse, velocity, _bodies_of(bodies))

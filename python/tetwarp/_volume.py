@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import as_array, samples_of, word_of
+from ._arrays import as_array, samples_of
 from ._grid import Grid, grid_from_core, make_grid
+from ._values import check_kind, word_of
 
 
 @dataclass(eq=False)
@@ -31,6 +32,7 @@ class Volume:
 
     def __post_init__(self) -> None:
         self.array = samples_of(self.array, "array")
+        check_kind(self.grid, Grid, "grid")
         if self.array.shape[:3] != self.grid.shape:
             raise ValueError(
                 f"array: expected {self.grid.shape} voxels as in the grid, got {self.array.shape}"
@@ -57,16 +59,32 @@ class Volume:
         return f"Volume({self.shape} of {self.dtype}, spacing {spacing}, name {self.name!r})"
 
 
+def made_volume(where: str, *members: Any) -> Volume:
+    """A Volume of these members, whose errors name the argument that they are of."""
+    try:
+        return Volume(*members)
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}") from None
+
+
+def checked_volume(value: Any, name: str) -> Volume:
+    """A Volume with the members of another one, which can be set at any time: they are checked where
+    they are used.
+    """
+    check_kind(value, Volume, name)
+    return made_volume(name, value.array, value.grid, value.name, value.nifti)
+
+
 def volume_of(
     value: Any, name: str, spacing: Any, origin: Any, direction: Any, affine: Any
 ) -> Volume:
-    """A Volume as it is, or an array with the usual keywords."""
+    """A Volume, checked, or an array with the usual keywords."""
     if isinstance(value, Volume):
         if any(x is not None for x in (spacing, origin, direction, affine)):
             raise ValueError(
                 f"{name}: a Volume has a grid; leave out spacing, origin, direction and affine"
             )
-        return value
+        return checked_volume(value, name)
     array = samples_of(value, name)
     return Volume(array, make_grid(array.shape[:3], spacing, origin, direction, affine))
 

@@ -9,75 +9,28 @@ import numpy as np
 
 from . import _core
 from ._arrays import (
-    check_callback,
     check_cells,
     check_finite,
     given_cells_of,
-    integer_of,
-    list_of,
     maker_of,
-    number_of,
     out_of,
     pair_of,
     points_of,
     renamed,
     with_remedy,
-    word_of,
 )
 from ._device import Device, on_device, type_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._result import EXTRAS, WarpResult
-from ._volume import Volume, volume_of
+from ._sources import default_value_of, quantities_of, sources_of, warn_of_rounding
+from ._values import check_callback, flag_of, integer_of, list_of, number_of, word_of
 
 Progress = Callable[[float], Any]
 #: Names of arguments in the library's errors, and here.
 _RENAMED = {"background": "default_value", "filter": "interpolator",
             "label gaussian": "label_gaussian", "label rule": "label_rule",
             "quantities": "quantity", "source": "volume", "sources": "volume"}
-
-
-def _sources_of(
-    volume: Any, spacing: Any, origin: Any, direction: Any, affine: Any
-) -> list[Volume]:
-    if not isinstance(volume, (list, tuple)):
-        return [volume_of(volume, "volume", spacing, origin, direction, affine)]
-    if not volume:
-        raise ValueError("volume: expected at least one volume")
-    sources = [
-        volume_of(one, f"volume[{number}]", spacing, origin, direction, affine)
-        for number, one in enumerate(volume)
-    ]
-    for number, source in enumerate(sources):
-        if source.grid != sources[0].grid:
-            raise ValueError(
-                f"volume[{number}]: expected the grid of volume[0], {sources[0].grid}, "
-                f"got {source.grid}"
-            )
-    return sources
-
-
-def _default_value_of(value: Any, sources: Sequence[Any]) -> float:
-    """A number, which no source rounds: the library has it in float64."""
-    number = number_of(value, "default_value")
-    whole = value.item() if np.ndim(value) == 0 and hasattr(value, "item") else value
-    for source in sources if isinstance(whole, int) else ():
-        if type_of(source) not in ("int64", "uint64"):
-            continue
-        limits = np.iinfo(type_of(source))
-        given = min(max(whole, limits.min), limits.max)
-        if given != min(max(int(number), limits.min), limits.max):
-            raise ValueError(f"default_value: expected a number that float64 holds, got {value}")
-    return number
-
-
-def _quantities_of(quantity: Any, count: int) -> list[str]:
-    if quantity is None:
-        return []
-    words = [quantity] * count if isinstance(quantity, str) else list_of(quantity, "quantity", "words")
-    if len(words) != count:
-        raise ValueError(f"quantity: expected {count} words, one per volume, got {len(words)}")
-    return [word_of(word, "quantity") for word in words]
 
 
 def extras_of(outputs: Sequence[str], allowed: dict[str, Any]) -> list[str]:
@@ -112,7 +65,7 @@ class Warper:
     label_rule : the label of a voxel is that of most ``"linear"`` weight, of most exact
         ``"volume"`` in its box, or of most ``"gaussian"`` weight, as of sitkLabelGaussian
     label_gaussian : standard deviation [source voxel] and cutoff [standard deviation]
-    default_value : of voxels that no cell covers
+    default_value : of voxels that no cell covers; integers round it half to even and saturate
     outside : ``"background"``: they get `default_value`; ``"identity"``: the source at the same
         position; ``"nearest"``: the source displaced as the nearest point of the mesh's surface;
         ``"falloff"``: the same with displacements that fall to zero smoothly over `falloff`
@@ -129,6 +82,11 @@ class Warper:
     backend : ``"auto"``, ``"cpu"``, ``"cuda"`` or ``"reference"``
     device : number of a CUDA device; that of the volume, if it is on one
     threads : of the CPU, 0: all processors; any number gives the same bits
+
+    Warns
+    -----
+    RuntimeWarning
+        the type of the samples has not the default value; the text tells the one that is stored.
 
     Raises
     ------
@@ -181,7 +139,7 @@ class Warper:
         given = list(volume) if isinstance(volume, (list, tuple)) else [volume]
         self._device = Device(given[0], "volume") if given and on_device(given[0]) else None
         if self._device is None:
-            sources = _sources_of(volume, spacing, origin, direction, affine)
+            sources = sources_of(volume, spacing, origin, direction, affine)
             self._arrays = [source.array for source in sources]
             self._names = tuple(source.name for source in sources)
             self._nifti = tuple(source.nifti for source in sources)
@@ -193,6 +151,7 @@ class Warper:
             backend, device = self._device.backend(backend), self._device.number
         self._grid = grid if reference is None else reference_grid(reference)
         self._makers = [maker_of(one) for one in given]
+        background = default_value_of(default_value, self._arrays)
         points = points_of(rest, "rest")
         corners = given_cells_of(cells, "cells", len(points))
         self._node_count = len(points)
@@ -200,10 +159,10 @@ class Warper:
             self._warper: _core.Warper | None = _core.Warper(
                 self._arrays, grid._core(), points, *corners,
                 interpolator=interpolator, label_rule=label_rule,
-                label_gaussian=gaussian, overshoot=overshoot, antialias=bool(antialias),
-                intensity=intensity, quantities=_quantities_of(quantity, len(given)),
+                label_gaussian=gaussian, overshoot=overshoot, antialias=flag_of(antialias, "antialias"),
+                intensity=intensity, quantities=quantities_of(quantity, len(given)),
                 outside=outside, falloff=falloff,
-                default_value=_default_value_of(default_value, self._arrays),
+                default_value=background,
                 output_grid=None if reference is None else self._grid._core(),
                 backend=backend, device=integer_of(device, "device"),
                 threads=integer_of(threads, "threads"),
@@ -217,6 +176,8 @@ class Warper:
                                ("backend", backend)):
                 word_of(word, name)
             raise with_remedy(renamed(error, _RENAMED)) from None
+        if background and outside == "background":
+            warn_of_rounding(background, self._arrays)
         self._is_source_grid = self._grid == grid
 
     @property

@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -90,6 +92,34 @@ TEST(Parallel, LoopsWithinTasksAndFromManyThreadsEnd) {
   }
   callers.clear();
   EXPECT_EQ(sum, 4 * 200 * 10 * 45);
+}
+
+/// Both tasks of a loop run at a time in the child of a fork, in whatever other threads were then.
+TEST(Parallel, ForksHaveThreadsOfTheirOwn) {
+  const auto meet = [] {
+    std::atomic<int> here = 0;
+    parallel_tasks(2, 2, [&](std::int64_t) {
+      ++here;
+      while (here < 2) std::this_thread::yield();
+    });
+  };
+  meet();
+  std::atomic<bool> goes_on = true;
+  std::jthread other([&] {
+    while (goes_on) parallel_tasks(4, 50, [](std::int64_t) {});
+  });
+  for (int n = 0; n < 20; ++n) {
+    const pid_t child = fork();
+    if (child == 0) {
+      alarm(30);  // ends it where it waits for ever
+      meet();
+      _exit(0);
+    }
+    int status = -1;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  goes_on = false;
 }
 
 TEST(Parallel, RefusesNumbersOutOfRange) {

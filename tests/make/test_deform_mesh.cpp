@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <tetwarp/make.hpp>
 #include <vector>
 
@@ -163,6 +164,16 @@ TEST(Deform, BadArgumentsAreNamed) {
                        }),
                        "offset"));
   EXPECT_THROW(deform_positions({}, {}, 1), std::invalid_argument);
+  for (const Deformation kind : all_kinds) {  // positions are finite, or refused
+    try {
+      const DeformOptions far{.kind = kind, .amount = 1e308, .offset = {1e308, 1e308, -1e308}};
+      for (const Point3& x : deform_positions(mesh, far, 1)) {
+        for (const double place : x) EXPECT_TRUE(std::isfinite(place)) << name_of(kind);
+      }
+    } catch (const std::invalid_argument& error) {
+      EXPECT_TRUE(contains(error.what(), "amount or offset")) << name_of(kind);
+    }
+  }
 }
 }  // namespace
 }  // namespace tetwarp

@@ -1,17 +1,21 @@
 /// @file test_lattice_mesh.cpp
-/// The embedding lattice: faces match, volumes add up, foreground is covered.
+/// The embedding lattice: faces match, volumes add up, foreground is covered; what is foreground.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <random>
 #include <set>
 #include <tetwarp/make.hpp>
+#include <utility>
 #include <vector>
 
+#include "host/base/sample_level.hpp"
 #include "tests/support/make_checks.hpp"
 
 namespace tetwarp {
@@ -195,6 +199,46 @@ TEST(Lattice, HexahedraAreItsCellsRightSideOut) {
       EXPECT_LT((corner(2) - corner(0) - x - y).norm(), 1e-9);
     }
   }
+}
+
+template <class T>
+class SampleLevel : public ::testing::Test {};
+using WideTypes = ::testing::Types<std::int64_t, std::uint64_t>;
+TYPED_TEST_SUITE(SampleLevel, WideTypes);
+
+/// Whole thresholds of this type, as far as float64 has them, and samples beside them.
+TYPED_TEST(SampleLevel, HasTheSignOfAnExactComparison) {
+  std::mt19937_64 random(5);
+  std::uniform_int_distribution<int> shift(0, 62), step(-3, 3);
+  int beside = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const auto whole = static_cast<TypeParam>(random() >> (1 + shift(random)));
+    const auto threshold = static_cast<double>(whole);
+    const auto center = static_cast<TypeParam>(threshold);
+    const auto sample = static_cast<TypeParam>(center + static_cast<TypeParam>(step(random)));
+    const double level = level_of(sample, threshold);
+    ASSERT_EQ(level > 0, std::cmp_greater(sample, center)) << sample << ' ' << threshold;
+    ASSERT_EQ(level < 0, std::cmp_less(sample, center)) << sample << ' ' << threshold;
+    beside += sample != center && static_cast<double>(sample) == threshold;
+  }
+  EXPECT_GT(beside, 1000);  // rounding would have hidden the difference
+}
+
+TYPED_TEST(SampleLevel, IsExactBesideFractionsAndAtTheLimits) {
+  using Limits = std::numeric_limits<TypeParam>;
+  const TypeParam sample = TypeParam{1} << 50;
+  EXPECT_EQ(level_of(sample, 0x1p50 - 0.25), 0.25);
+  EXPECT_EQ(level_of(sample, 0x1p50 + 0.25), -0.25);
+  EXPECT_LT(level_of(Limits::max(), static_cast<double>(Limits::max())), 0);  // rounded up
+  EXPECT_EQ(level_of(Limits::min(), static_cast<double>(Limits::min())), 0);
+  EXPECT_LT(level_of(Limits::max(), 1e300), 0);
+  EXPECT_GT(level_of(Limits::min(), -1e300), 0);
+}
+
+TEST(SampleLevelOfFloats, IsTheirDifference) {
+  EXPECT_EQ(level_of(0.75F, 0.5), 0.25);
+  EXPECT_EQ(level_of(std::uint8_t{3}, 5), -2);
+  EXPECT_TRUE(std::isnan(level_of(std::nan(""), 0)));
 }
 }  // namespace
 }  // namespace tetwarp

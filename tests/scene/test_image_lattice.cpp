@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <tetwarp/tetwarp.hpp>
 #include <vector>
@@ -110,6 +112,27 @@ TEST(ImageLattice, OfPhantomsHasTheKnownCounts) {
   EXPECT_EQ(count(torso, cells_of(7, 5, 4)), 700);
   EXPECT_EQ(count(fish, cells_of(1, 1, 7)), 35);
   EXPECT_NEAR(count(orange, {.tets = 160}), 160, 6);
+}
+
+/// Samples and threshold that are shifted alike, beyond the digits of float64.
+TEST(ImageLattice, SeesAllDigitsOf64Bits) {
+  const std::int64_t shift = std::int64_t{1} << 60;
+  const auto ball = [&](std::int64_t by) {
+    const ImageGeometry floats = ball_image({11, 12, 13}, 4.5);
+    ImageGeometry image{make_volume(floats.volume.grid, PixelType::int64), static_cast<double>(by)};
+    const auto from = floats.volume.samples<float>();
+    const auto to = image.volume.samples<std::int64_t>();
+    for (std::size_t v = 0; v < from.size(); ++v) {
+      to[v] = by + static_cast<std::int64_t>(std::floor(from[v]));
+    }
+    return make_image_lattice("bodies[0]", image, cells_of(3, 3, 3)).mesh;
+  };
+
+  const TetMesh mesh = ball(0), shifted = ball(shift);
+
+  EXPECT_GT(mesh.tets.size(), 50U);
+  EXPECT_EQ(shifted.tets, mesh.tets);
+  EXPECT_EQ(shifted.nodes, mesh.nodes);
 }
 
 TEST(ImageLattice, NoForegroundIsAnError) {

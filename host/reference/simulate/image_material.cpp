@@ -49,13 +49,14 @@ Matrix3d world_from_index(const Grid& grid) {
   return m;
 }
 
-double sample_at(const Volume& volume, const Lattice3& ijk) {
+/// With all digits, also those of 64-bit integers.
+long double sample_at(const Volume& volume, const Lattice3& ijk) {
   const auto& dims = volume.grid.dims;
   const std::int64_t voxel = ijk[0] + dims[0] * (ijk[1] + dims[1] * ijk[2]);
-  double value = 0;
+  long double value = 0;
   with_pixel_type(volume.type, [&](auto zero) {
     using T = decltype(zero);
-    value = static_cast<double>(
+    value = static_cast<long double>(
         volume.samples<T>()[static_cast<std::size_t>(voxel * volume.components)]);
   });
   return value;
@@ -202,12 +203,12 @@ std::vector<std::vector<HeldVoxel>> owned_voxels(
           const Lattice3 center{ijk[0] << 20, ijk[1] << 20, ijk[2] << 20};
           if (!contains(corners, center)) continue;
           is_owned[voxel] = true;
-          const double value = sample_at(image.volume, ijk);
+          const long double value = sample_at(image.volume, ijk);
           if (!(value >= image.threshold)) continue;
           const Vector3d index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]),
                                static_cast<double>(ijk[2]));
           const Eigen::Vector4d shape = shape_at(tet, index);
-          owned[t].push_back({value, 1, shape * shape.transpose()});
+          owned[t].push_back({static_cast<double>(value), 1, shape * shape.transpose()});
         }
       }
     }
@@ -234,11 +235,11 @@ std::vector<std::vector<HeldVoxel>> shared_voxels(
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (ijk[axis] < 0 || ijk[axis] >= grid.dims[axis]) return;
       }
-      const double value = sample_at(image.volume, ijk);
+      const long double value = sample_at(image.volume, ijk);
       if (!(value >= image.threshold)) return;
       HeldVoxel held = held_by(pieces);
       if (held.share <= smallest_share * std::min(whole.volume(), 1.0)) return;
-      held.value = value;
+      held.value = static_cast<double>(value);
       shared[t].push_back(held);
     });
   }

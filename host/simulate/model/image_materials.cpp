@@ -121,17 +121,17 @@ class ImageSums {
     const Grid& grid = image_.volume.grid;
     const std::vector<std::int32_t> owner = voxel_owners(
         image_.volume, {{0, 0, 0}, grid.dims}, {part_.geometry.nodes, part_.geometry.tets});
-    VolumeRows samples(image_.volume);
+    VolumeRows samples(image_.volume), levels(image_.volume, image_.threshold);
     std::size_t v = 0;
     for (std::int64_t k = 0; k < grid.dims[2]; ++k) {
       for (std::int64_t j = 0; j < grid.dims[1]; ++j) {
         const std::vector<double>& row = samples.row(j, k);
+        const std::vector<double>& level = levels.row(j, k);
         for (std::int64_t i = 0; i < grid.dims[0]; ++i, ++v) {
-          const double value = row[static_cast<std::size_t>(i)];
-          if (owner[v] < 0 || !(value >= image_.threshold)) continue;
+          if (owner[v] < 0 || !(level[static_cast<std::size_t>(i)] >= 0)) continue;
           const auto t = static_cast<std::size_t>(owner[v]);
           sums_[t].covered += 1;
-          const std::optional<Material> material = transfer_.at(value);
+          const auto material = transfer_.at(row[static_cast<std::size_t>(i)]);
           if (!material) continue;
           const Point3 center = grid.world_of(
               {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
@@ -174,11 +174,11 @@ class ImageSums {
   /// Of all voxels of the foreground.
   double whole_volume() const {
     double count = 0;
-    VolumeRows samples(image_.volume);
+    VolumeRows levels(image_.volume, image_.threshold);
     const auto& dims = image_.volume.grid.dims;
     for (std::int64_t k = 0; k < dims[2]; ++k) {
       for (std::int64_t j = 0; j < dims[1]; ++j) {
-        for (const double value : samples.row(j, k)) count += value >= image_.threshold ? 1 : 0;
+        for (const double level : levels.row(j, k)) count += level >= 0 ? 1 : 0;
       }
     }
     return count * voxel_volume_;
@@ -194,7 +194,7 @@ class ImageSums {
     double value = 0;
     const auto is_foreground = [&](const VoxelIndex& voxel) {
       value = sample_of(image_.volume, voxel);
-      return value >= image_.threshold;
+      return sample_of(image_.volume, voxel, image_.threshold) >= 0;
     };
     for_shares(corners, {{0, 0, 0}, image_.volume.grid.dims}, is_foreground,
                [&](const VoxelIndex&, const VoxelShare& share) {

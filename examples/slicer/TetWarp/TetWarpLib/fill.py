@@ -7,8 +7,19 @@ Positions are in RAS, the world of Slicer. Matrices are 4 x 4 arrays, from voxel
 import numpy as np
 import tetwarp
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_TETRA, vtkImageData
+from vtkmodules.vtkCommonDataModel import (
+    VTK_HEXAHEDRON,
+    VTK_TETRA,
+    vtkGenericCell,
+    vtkImageData,
+)
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
+
+
+def dimensions_of(kind):
+    """Of cells of a type of VTK; those of no known type count as solid."""
+    cell = vtkGenericCell.InstantiateCell(kind)
+    return 3 if cell is None else cell.GetCellDimension()
 
 
 def mesh_of(grid):
@@ -19,7 +30,7 @@ def mesh_of(grid):
     cells = grid.GetCells()
     offsets = vtk_to_numpy(cells.GetOffsetsArray())
     corners = vtk_to_numpy(cells.GetConnectivityArray())
-    solid = {int(kind) for kind in np.unique(kinds) if int(kind) >= VTK_TETRA}
+    solid = {kind for kind in np.unique(kinds).tolist() if dimensions_of(kind) == 3}
     if len(solid) != 1 or not solid <= {VTK_TETRA, VTK_HEXAHEDRON}:
         raise ValueError("expected a mesh of tetrahedra (VTK_TETRA) or of hexahedra, found cells "
                          f"of VTK's types {sorted(solid)}")
