@@ -65,6 +65,24 @@ TEST_F(FieldBatch, RunsBesideWarpsByAMesh) {
   EXPECT_EQ(sha256_of_file(scene / "three.nii"), alone);
 }
 
+/// The step is a default of fields with several steps, of which each job takes one.
+TEST_F(FieldBatch, TakesStepsForFieldsOfSeveral) {
+  made({"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "fields.nii", "--outputs", "displacement",
+        "--temporal"});
+  write_text(scene / "jobs.csv",
+             "volume,transform,output\n"
+             "volume.vtkhdf,fields_displacement.nii,several.nii\n"
+             "volume.vtkhdf,field.vtkhdf,single.nii\n");
+  for (const char* step : {"1", "3"}) {
+    made({"warp", "volume.vtkhdf", "fields_displacement.nii", "-o", "alone.nii", "--steps", step});
+    made({"warp", "--batch", "jobs.csv", "--steps", step, "--report", "all.json"});
+    EXPECT_EQ(sha256_of_file(scene / "several.nii"), sha256_of_file(scene / "alone.nii"));
+    const auto jobs = nlohmann::json::parse(text_of(scene / "all.json"))["jobs"];
+    EXPECT_FALSE(jobs[0].contains("defaults_left_out"));
+    EXPECT_TRUE(jobs[1].contains("defaults_left_out"));
+  }
+}
+
 /// Defaults that only warps by a mesh have are left out of the others.
 TEST_F(FieldBatch, TakesDefaultsOfMeshesForMeshesAlone) {
   write_text(scene / "jobs.csv",

@@ -121,6 +121,9 @@ TEST_F(CliSteps, OfARestMeshThatMovesAreChosen) {
     run(with({"rest_*.vtk", "--rest-step", std::to_string(step)}));
     const Volume field = read_volume(scene / "o.vtkhdf", "tetwarp_displacement");
     EXPECT_NEAR(field.samples<float>()[0], 2.0 + 2.0 * step, 1e-4);
+    run({"compose", "still.vtk", "-o", "f.vtkhdf", "--like", "volume.vtkhdf", "--rest",
+         "rest_*.vtk", "--rest-step", std::to_string(step)});
+    expect_same("f.vtkhdf", "o.vtkhdf", "tetwarp_displacement");
   }
 }
 

@@ -55,19 +55,22 @@ ChainLink read_link(const ComposeArguments& arguments,
   const std::string path = ChainLink::path_of(word);
   const FileKind kind = kind_of(path);
   MeshReadOptions options = arguments.mesh;
+  if (options.rest_file) options.rest_step.reset();  // of that file
   options.rest_file.reset();
   if (kind == FileKind::mesh) options.import.displacement.reset();
   ChainLink link(word, options, arguments.axes, world);
   if (kind == FileKind::nifti || kind == FileKind::image) used.insert("axes");
   if (link.mesh() || link.step_count() > 1) used.insert("steps");
   if (!link.mesh()) return link;
-  used.insert({"ten-nodes", "rest-step"});
+  used.insert("ten-nodes");
   if (kind != FileKind::mesh) used.insert({"axes", "displacement"});
   const bool takes_rest = arguments.mesh.rest_file && !link.mesh()->header().has_displacement;
   if (takes_rest) {
     options.rest_file = arguments.mesh.rest_file;
+    options.rest_step = arguments.mesh.rest_step;
     used.insert("rest");
   }
+  if (takes_rest || !arguments.mesh.rest_file) used.insert("rest-step");
   print_mesh_warnings(path, link.mesh()->header(), options);
   return takes_rest ? ChainLink(word, options, arguments.axes, world) : std::move(link);
 }
@@ -261,8 +264,10 @@ void add_compose_command(CLI::App& app, Run& run) {
                    "mesh file that holds the rest positions of meshes without such an array")
       ->type_name("FILE");
   command
-      ->add_option("--rest-step", arguments->mesh.rest_step,
-                   "step that holds the rest positions of moving points [0]")
+      ->add_option(
+          "--rest-step", arguments->mesh.rest_step,
+          "step that holds the rest positions of moving points, also of --rest FILE [0; of "
+          "FILE none]")
       ->check(at_least(0))
       ->type_name("N");
   add_ten_nodes(*command, arguments->mesh.import.keeps_curved);

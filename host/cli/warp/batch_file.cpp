@@ -133,13 +133,15 @@ class JobReader {
   std::string refusal(const CLI::Option& option, const Json& job, bool is_by_transform) const {
     const std::string& name = option.get_lnames().front();
     if (!job.is_object()) return {};
-    if (is_by_transform && name == "axes") {
+    if (is_by_transform && (name == "axes" || name == "steps")) {
       const std::vector<std::string> files = located_names(job, deformation_key(job));
       const auto exists = [](const std::string& file) {
         std::error_code error;
         return fs::exists(file, error);
       };
-      return std::ranges::all_of(files, exists) && !files.empty() ? axes_refusal(files.back()) : "";
+      const bool is_there = !files.empty() && std::ranges::all_of(files, exists);
+      if (name == "axes") return is_there ? axes_refusal(files.back()) : "";
+      if (is_there && has_steps_or_error(files.back())) return {};
     }
     if (is_by_transform && name != "fsl") {
       const bool has_provenance = job.contains("provenance")
@@ -184,6 +186,15 @@ class JobReader {
   /// The key of the file that deforms the volume.
   static std::string deformation_key(const Json& job) {
     return job.contains("transform") ? "transform" : "mesh";
+  }
+
+  /// A field that cannot be read is an error of its job.
+  static bool has_steps_or_error(const std::string& transform) {
+    try {
+      return transform_step_count(transform) > 1;
+    } catch (const IoError&) {
+      return true;
+    }
   }
 
   std::string located(const std::string& path) const { return (folder_ / path).string(); }
