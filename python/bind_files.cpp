@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <tetwarp/io.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <tetwarp/scene_io.hpp>
 #include <tetwarp/surface_reader.hpp>
 #include <utility>
@@ -249,6 +250,10 @@ void bind_files(nb::module_& module) {
       [](const std::string& path) { return name_of(file_call([&] { return kind_of(path); })); },
       nb::arg("path"));
   module.def("has_mesh_extension", &has_mesh_extension, nb::arg("path"));
+  module.def(
+      "has_component_axes",
+      [](const std::string& path) { return file_call([&] { return has_component_axes(path); }); },
+      nb::arg("path"));
   module.def(
       "is_surface_file",
       [](const std::string& path) { return file_call([&] { return is_surface_file(path); }); },

@@ -264,7 +264,7 @@ def test_what_has_no_effect_on_a_volume_is_refused(ending, case, tmp_path):
     vectors = np.random.default_rng(1).random((2, 3, 4, *components)).astype(np.float32)
     tetwarp.write(path, vectors, grid=tetwarp.Grid((2, 3, 4)))
     usual = tetwarp.read(path).array
-    if ending in (".nii", ".nii.gz"):
+    if ending in (".nii", ".nii.gz", ".nrrd", ".mha", ".mhd"):
         assert np.array_equal(tetwarp.read(path, axes="lps").array, usual * np.float32([-1, -1, 1]))
         return
     with pytest.raises((ValueError, OSError), match="axes"):
@@ -277,6 +277,20 @@ def test_axes_of_meshes_of_vtkhdf_are_refused(mesh, tmp_path):
     for call in (tetwarp.read, tetwarp.MeshFile):
         with pytest.raises(ValueError, match="axes: has no effect on a mesh of VTKHDF"):
             call(tmp_path / "a.vtkhdf", axes="lps")
+
+
+@pytest.mark.parametrize("ending", [".nii", ".nrrd", ".mha"])
+def test_vectors_along_lps_axes_are_written_as_they_were(tmp_path, ending):
+    vectors = np.random.default_rng(1).normal(size=(2, 3, 4, 3)).astype(np.float32)
+    path = tmp_path / ("a" + ending)
+    tetwarp.write(path, vectors, grid=tetwarp.Grid((2, 3, 4)))
+
+    tetwarp.write(path, tetwarp.read(path, axes="lps"))
+
+    np.testing.assert_array_equal(tetwarp.read(path).array, vectors)
+    tetwarp.write(path, vectors[..., 0], grid=tetwarp.Grid((2, 3, 4)))
+    with pytest.raises(tetwarp.IoError, match='axes="lps" turns'):
+        tetwarp.read(path, axes="lps")
 
 
 def test_remedies_name_arguments_of_the_package(tmp_path):

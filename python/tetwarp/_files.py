@@ -126,8 +126,8 @@ def read(
         surface (VTKHDF, .stl, .ply, .obj, .vtp) or contact problem (FCLIB)
     array : of a volume file; empty: its active scalars
     step : of a volume file
-    axes : ``"ras"`` or ``"lps"``, of vectors and tensors of NIfTI images and of the nodes of meshes
-        that are not VTKHDF; ``"lps"`` is refused where it would turn nothing
+    axes : ``"ras"`` or ``"lps"``, of vectors and tensors of NIfTI, NRRD and MetaImage files and
+        of the nodes of meshes that are not VTKHDF; ``"lps"`` is refused where it would turn nothing
     labels : floats hold labels: they are read as int32, other numbers are an error
     ten_nodes : ``"curved"``: tetrahedra of ten nodes stay what they are, cells of shape (m, 10);
         ``"split"``: they become eight straight ones, see split_ten_nodes()
@@ -180,8 +180,8 @@ def read(
         check_default(name, "axes", axes, "ras")
         check_default(name, "labels", are_labels, False)
         return read_image(name, array, error)
-    if kind != "NIfTI image":  # of which the library refuses scalars
-        _check_unused("volume that is no NIfTI image", turns)
+    if not _core.has_component_axes(name):  # of others the library refuses scalars
+        _check_unused("volume that is no NIfTI, NRRD or MetaImage file", turns)
     return Volume(samples, grid_from_core(grid), read_name, nifti)
 
 
