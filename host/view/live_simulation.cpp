@@ -200,51 +200,63 @@ void LiveSimulation::follow(const Order& order) {
     note_change();
     return;
   }
-  act(event);
+  try_to_act(event);
 }
 
 void LiveSimulation::act(const InputEvent& event) {
   note_change();
   message_.clear();
+  if (event.kind == InputKind::grab) {
+    PointHandle handle = event.handle;
+    handle.name = handle_name;
+    simulator_.add_handle(handle);
+    held_ = Held{body_of(handle.body), handle.center, handle.center, handle.stiffness};
+  } else if (event.kind == InputKind::move) {
+    simulator_.move_handle(handle_name, event.displacement);
+    if (held_) held_->target = plus(held_->start, event.displacement);
+  } else if (event.kind == InputKind::carry) {
+    simulator_.move_script(event.handle.body, event.displacement, {0, 0, 0});
+    const std::size_t body = body_of(event.handle.body);
+    carrier_.note({body, event.displacement});
+    fingers_.follow(body, event.displacement);
+  } else if (event.kind == InputKind::limit) {
+    limit_ = event.limit;
+    return;  // the step notes it
+  } else if (event.kind == InputKind::release) {
+    simulator_.release_handle(handle_name);
+    held_.reset();
+  } else {
+    simulator_.restore(start_);
+    held_.reset();
+    carrier_.reset();
+    fingers_.reset(carrier_);
+    has_failed_ = false;
+  }
+  log_.events.push_back(event);
+}
+
+/// Input that cannot be is left out, and the window says why.
+void LiveSimulation::try_to_act(const InputEvent& event) {
   try {
-    if (event.kind == InputKind::grab) {
-      PointHandle handle = event.handle;
-      handle.name = handle_name;
-      simulator_.add_handle(handle);
-      held_ = Held{body_of(handle.body), handle.center, handle.center, handle.stiffness};
-    } else if (event.kind == InputKind::move) {
-      simulator_.move_handle(handle_name, event.displacement);
-      if (held_) held_->target = plus(held_->start, event.displacement);
-    } else if (event.kind == InputKind::carry) {
-      simulator_.move_script(event.handle.body, event.displacement, {0, 0, 0});
-      const std::size_t body = body_of(event.handle.body);
-      carrier_.note({body, event.displacement});
-      fingers_.follow(body, event.displacement);
-    } else if (event.kind == InputKind::limit) {
-      limit_ = event.limit;
-      return;  // the step notes it
-    } else if (event.kind == InputKind::release) {
-      simulator_.release_handle(handle_name);
-      held_.reset();
-    } else {
-      simulator_.restore(start_);
-      held_.reset();
-      carrier_.reset();
-      fingers_.reset(carrier_);
-      has_failed_ = false;
-    }
-    log_.events.push_back(event);
+    act(event);
   } catch (const std::exception& error) {
     message_ = error.what();
   }
 }
 
-/// Acts as the events that were recorded before the next step.
+/// Acts as the events that were recorded before the next step. The first that cannot be ends it.
 void LiveSimulation::repeat_input() {
   if (!replay_) return;
   const std::vector<InputEvent>& events = replay_->events;
   while (next_event_ < events.size() && events[next_event_].tick <= tick_) {
-    act(events[next_event_++]);
+    try {
+      act(events[next_event_++]);
+    } catch (const std::exception& error) {
+      message_ = options_.replay + ": its input before step " + std::to_string(tick_ + 1) +
+                 " cannot be repeated: " + error.what();
+      has_failed_ = true;
+      next_event_ = events.size();
+    }
   }
 }
 
@@ -258,7 +270,7 @@ std::size_t LiveSimulation::body_of(const std::string& name) const {
 void LiveSimulation::take_step() {
   if (const auto way = carrier_.next()) {
     const std::string& name = simulator_.scene().bodies[way->body].name;
-    act({tick_, InputKind::carry, {.body = name}, way->displacement});
+    try_to_act({tick_, InputKind::carry, {.body = name}, way->displacement});
   }
   note_change();
   single_steps_ = std::max<std::int64_t>(single_steps_ - 1, 0);

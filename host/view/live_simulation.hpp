@@ -102,6 +102,7 @@ class LiveSimulation {
   std::vector<Order> take_orders(bool waits);
   void follow(const Order& order);
   void act(const InputEvent& event);
+  void try_to_act(const InputEvent& event);
   void repeat_input();
   bool may_step() const;
   void take_step();

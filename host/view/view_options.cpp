@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <stdexcept>
 #include <string_view>
 
@@ -120,10 +121,13 @@ bool read(std::string_view text, std::optional<T>& value) {
 }  // namespace
 
 std::string ViewOptions::scene_words() const {
-  std::string words = scene();
+  const auto name_of = [](const std::string& file) {
+    return std::filesystem::path(file).filename().string();
+  };
+  std::string words = name_of(scene());
   if (ball) words += " --ball ";
   write(words, ball);
-  if (!restart.empty()) words += " --restart " + restart;
+  if (!restart.empty()) words += " --restart " + name_of(restart);
   if (fingers) {
     words += " --fingers ";
     write(words, fingers);

@@ -48,7 +48,8 @@ struct ViewOptions {
 
   /// The scene, for messages.
   const std::string& scene() const { return scene_file.empty() ? scene_name : scene_file; }
-  /// The scene with what options add to it, as a record of input names it.
+  /// The scene with what options add to it, as a record of input names it; of files the name
+  /// without the folder.
   std::string scene_words() const;
 };
 

@@ -83,6 +83,7 @@ TEST_F(CliOutputs, ReplaceExistingFilesOfAnySizeAndKind) {
 
 TEST_F(CliOutputs, ThatAreInputsAreRefusedAndKept) {
   const std::string bytes = text_of(scene / "skin.vtkhdf");
+  write_text(scene / "colors.png", "{}");
   for (const Names& words :
        {Names{"mesh", "--from-surface", "skin.vtkhdf", "-o", "./skin.vtkhdf"},
         Names{"mesh", "--from-surface", "skin.vtkhdf", "-o", "m.vtkhdf", "--surface",
@@ -94,6 +95,9 @@ TEST_F(CliOutputs, ThatAreInputsAreRefusedAndKept) {
         Names{"deform", "mesh.vtkhdf", "-o", "mesh.vtkhdf"},
         Names{"export", "image.nii", "-o", "image.nii"},
         Names{"contact", "problem.hdf5", "-o", "o.hdf5", "--report", "problem.hdf5"},
+        Names{"render", "image.nii", "-o", "colors.png", "--cast", "colors.png"},
+        Names{"simulate", "scene.json", "-o", "out", "--picture", "--cast", "colors.png",
+              "--checkpoint", "colors.png"},
         Names{"simulate", "scene.json", "-o", "out", "--report", "scene.json"}}) {
     expect_refused_line(scene, words, "is also an input; name another output");
   }
@@ -103,9 +107,13 @@ TEST_F(CliOutputs, ThatAreInputsAreRefusedAndKept) {
              R"({"tetwarp_scene": 1, "time_step": 0.01, "duration": 0.02, "bodies": [
                {"name": "ball", "kind": "rigid", "density": 500, "mesh": {"file": "ball.vtkhdf"}}]})");
   expect_refused_line(scene, {"simulate", "run/scene.json", "-o", "run"},
-                      "is a file of the scene, and body 'ball' would be written to it");
+                      "is an input, and body 'ball' would be written to it");
   expect_refused_line(scene, {"simulate", "scene.json", "-o", "out", "--contacts", "skin.vtkhdf"},
-                      "is a file of the scene and the file of --contacts");
+                      "is an input and the file of --contacts");
+  fs::copy_file(scene / "scene.json", scene / "run/report.json");
+  fs::copy_file(scene / "skin.vtkhdf", scene / "run/skin.vtkhdf");
+  expect_refused_line(scene, {"simulate", "run/report.json", "-o", "run"},
+                      "is an input and the report of the run");
   EXPECT_TRUE(text_of(scene / "skin.vtkhdf") == bytes);
   EXPECT_TRUE(text_of(scene / "run/ball.vtkhdf") == bytes);
 }

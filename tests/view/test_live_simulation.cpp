@@ -217,6 +217,34 @@ TEST(LiveSimulation, RepeatsStepsThatWereOutOfTime) {
   EXPECT_THROW(LiveSimulation(scene, options, {}), std::invalid_argument);
 }
 
+/// A record of another scene of the same name, or one that was changed.
+TEST(LiveSimulation, AReplayEndsAtInputThatCannotBe) {
+  const PointHandle right{.body = "ball", .center = {0, 0, 0.2}, .radius = 0.1, .stiffness = 5};
+  PointHandle stranger = right, nowhere = right;
+  stranger.body = "nobody";
+  nowhere.radius = -1;
+  for (const InputEvent& bad :
+       {InputEvent{.tick = 2, .kind = InputKind::grab, .handle = stranger},
+        InputEvent{.tick = 2, .kind = InputKind::grab, .handle = nowhere},
+        InputEvent{.tick = 2, .kind = InputKind::carry, .handle = right},
+        InputEvent{.tick = 2, .kind = InputKind::move}, InputEvent{.tick = 2}}) {
+    ViewOptions options;
+    options.replay = "input.txt";
+    InputLog log;
+    log.events = {bad, {.tick = 2, .kind = InputKind::restart}};
+    log.ticks = 5;
+    LiveSimulation simulation(live_scene(), options, log);
+    simulation.begin();
+    while (!frame_at(simulation, 0).has_failed) {
+    }
+    simulation.end();
+    EXPECT_EQ(simulation.log().ticks, 2);
+    EXPECT_TRUE(simulation.frames().front().message.starts_with(
+        "input.txt: its input before step 3 cannot be repeated: "))
+        << simulation.frames().front().message;
+  }
+}
+
 /// Nobody holds what was pulled when the checkpoint was written.
 TEST(LiveSimulation, APullEndsWithItsCheckpoint) {
   const TemporaryFolder folder;

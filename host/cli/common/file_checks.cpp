@@ -62,7 +62,7 @@ void check_output_files(const std::vector<std::string>& outputs,
   for (const std::string& output : outputs) {
     check_output_file(output, inputs);
     if (!seen.insert(canonical_path(output)).second) {
-      throw IoError(output, "", "would be written twice; give the volumes or outputs other names");
+      throw IoError(output, "", "would be written twice; choose another name");
     }
   }
 }

@@ -136,8 +136,9 @@ void check_files(const RenderArguments& arguments) {
                   fmt::format("is a picture, of one volume, not of {}; name a film, .gif",
                               arguments.volumes.size()));
   }
-  check_output_file(arguments.output, inputs);
   check_series(arguments.series, inputs);
+  if (arguments.pictures.casts_by_file()) inputs.push_back(arguments.pictures.cast);
+  check_output_file(arguments.output, inputs);
   if (arguments.is_film()) FilmWriter::check_available(arguments.output);
 }
 

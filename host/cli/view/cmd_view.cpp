@@ -11,7 +11,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <tetwarp/scene_io.hpp>
 #include <vector>
 
@@ -44,17 +46,27 @@ std::string find_viewer() {
                            "build again, or set TETWARP_VIEWER to its path");
 }
 
-/// Replaces this process.
-int run_view(const view::ViewOptions& options) {
-  std::vector<std::string> inputs;
+/// Nothing is written to a file that is read, those that the scene names among them, or twice.
+void check_files(const view::ViewOptions& options) {
+  std::vector<std::string> inputs, outputs;
+  if (!options.scene_file.empty()) read_scene(options.scene_file, &inputs);
+  for (const std::string& device : CLI::detail::split(options.devices, ',')) {
+    if (!device.empty()) inputs.push_back(device);
+  }
   for (const std::string& file :
-       {options.scene_file, options.replay, options.restart, options.key}) {
+       {options.scene_file, options.replay, options.restart, options.key, options.screens}) {
     if (!file.empty()) inputs.push_back(file);
   }
   for (const std::string& file :
        {options.screenshot, options.film, options.record, options.checkpoint}) {
-    if (!file.empty()) check_output_file(file, inputs);
+    if (!file.empty()) outputs.push_back(file);
   }
+  check_output_files(outputs, inputs);
+}
+
+/// Replaces this process.
+int run_view(const view::ViewOptions& options) {
+  check_files(options);
   std::vector<std::string> words = view::words_of(options);
   words.insert(words.begin(), find_viewer());
   std::vector<char*> pointers;
@@ -190,7 +202,34 @@ void declare_screens(CLI::App& app, view::ViewOptions& options) {
       ->type_name("NAME");
 }
 
+/// @param mode  the option beside which only those of `used` have an effect
+void refuse_others(const CLI::App& command, const std::string& mode, std::set<std::string> used) {
+  used.insert(mode);
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() > 0 && !used.contains(option->get_name())) {
+      throw CLI::ValidationError(option->get_name(),
+                                 "has no effect with " + mode + "; leave it out");
+    }
+  }
+}
+
+/// Keys that are written, and screens and trackers of a master, use few of the options.
+void check_mode(const view::ViewOptions& options, const CLI::App& command) {
+  if (!options.make_keys.empty()) refuse_others(command, "--make-keys", {});
+  if (options.join.empty()) return;
+  if (options.screen.empty() != options.tracker) {
+    throw CLI::ValidationError("--join", "needs either --screen NAME or --tracker");
+  }
+  if (options.tracker) {
+    refuse_others(command, "--tracker", {"--join", "--key"});
+  } else {
+    refuse_others(command, "--join",
+                  {"--screen", "--key", "--screenshot", "--backend", "--device", "--threads"});
+  }
+}
+
 void check_view(const view::ViewOptions& options, const CLI::App& command) {
+  check_mode(options, command);
   check_device(command, meaning_of("--backend", options.backend, choices_of<Backend>()));
   const bool has_limit = options.max_step_seconds < std::numeric_limits<double>::infinity();
   if (has_limit && !options.replay.empty()) {
@@ -207,23 +246,11 @@ void check_view(const view::ViewOptions& options, const CLI::App& command) {
   if (!options.fingers && command.get_option("--skin-stiffness")->count() > 0) {
     throw CLI::ValidationError("--skin-stiffness", "needs --fingers");
   }
-  if (!options.make_keys.empty() && !(options.join.empty() && options.screens.empty())) {
-    throw CLI::ValidationError("--make-keys", "only writes keys; leave out --join and --screens");
-  }
-  if (!options.join.empty() && !options.screens.empty()) {
-    throw CLI::ValidationError("--screens", "is that of the master; leave it out with --join");
-  }
-  const bool shows_scene = !options.scene().empty();
-  if (shows_scene == (!options.join.empty() || !options.make_keys.empty())) {
-    throw CLI::ValidationError(
-        "SCENE", shows_scene ? "is that of the master; leave it out with --join and --make-keys"
-                             : "is missing: a file, or the name of a scene that ships");
+  if (options.scene().empty() && options.join.empty() && options.make_keys.empty()) {
+    throw CLI::ValidationError("SCENE", "is missing: a file, or the name of a scene that ships");
   }
   if (options.join.empty() && (!options.screen.empty() || options.tracker)) {
     throw CLI::ValidationError("--screen and --tracker", "need --join ADDRESS");
-  }
-  if (!options.join.empty() && options.screen.empty() != options.tracker) {
-    throw CLI::ValidationError("--join", "needs either --screen NAME or --tracker");
   }
   if (options.screens.empty() && options.join.empty() && !options.key.empty()) {
     throw CLI::ValidationError("--key", "needs --screens or --join");
