@@ -30,7 +30,8 @@ inline int nearest_pattern(int first,
 }
 
 inline int count_along(double length, double spacing) {
-  return std::max(1, static_cast<int>(std::lround(length / spacing)));
+  constexpr double most = 1e8;
+  return std::max(1, static_cast<int>(std::lround(std::min(length / spacing, most))));
 }
 /// Of a straight part.
 inline int count_along(double length, double spacing, Faces faces) {

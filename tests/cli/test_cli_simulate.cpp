@@ -162,6 +162,12 @@ TEST(Simulate, DrawsPictures) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(text_of(scene.in("out", "scene_0001.png")).starts_with("\x89PNG"));
   EXPECT_FALSE(fs::exists(scene.in("out", "scene_0002.png")));
+  EXPECT_EQ(result.err, "");
+
+  const CommandResult shorter =
+      scene.simulate({"-o", "out", "--picture", "--pixels", "120,80", "--steps", "0"});
+  EXPECT_NE(shorter.err.find("scene_0001.png: is of an earlier run"), std::string::npos)
+      << shorter.err;
 }
 
 /// A camera of the scene by its name shows what the same camera by its numbers shows.

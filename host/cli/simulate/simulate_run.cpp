@@ -11,10 +11,13 @@
 #include <iterator>
 #include <map>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
+#include <utility>
+#include <vector>
 
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
@@ -50,11 +53,21 @@ void choose_contact(const SimulateArguments& arguments, Scene& scene) {
   }
 }
 
+/// Files that a run reads, but those that the scene names and the checkpoint.
+std::vector<std::string> files_read(const SimulateArguments& arguments) {
+  std::vector<std::string> files;
+  if (!arguments.scene_file.empty()) files.push_back(arguments.scene_file);
+  if (arguments.pictures.casts_by_file()) files.push_back(arguments.pictures.cast);
+  if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
+    files.push_back(arguments.grid.base);
+  }
+  return files;
+}
+
 /// Checks the names of all files before anything is computed. The checkpoint that a run continues
 /// from may be replaced by its own.
 void check_files(const SimulateArguments& arguments) {
-  std::vector<std::string> inputs;
-  if (!arguments.scene_file.empty()) inputs.push_back(arguments.scene_file);
+  std::vector<std::string> inputs = files_read(arguments);
   check_new_folder(arguments.folder, arguments.folder);
   if (!arguments.checkpoint.empty()) check_output_file(arguments.checkpoint, inputs);
   if (!arguments.restart.empty()) inputs.push_back(arguments.restart);
@@ -71,7 +84,7 @@ bool is_of_body(const std::string& name, const std::string& body) {
          (rest.starts_with(".warped_") && rest.ends_with(".vtkhdf"));
 }
 
-/// No two results are written to one file, and none to a file that the scene names.
+/// No two results are written to one file, and none to a file that is read.
 void check_results(const SimulateArguments& arguments,
                    const Scene& scene,
                    const std::vector<std::string>& inputs) {
@@ -103,13 +116,12 @@ void check_results(const SimulateArguments& arguments,
     for (const Body& body : scene.bodies) {
       if (!is_in_folder || !is_of_body(path.filename().string(), body.name)) continue;
       throw IoError(input, "",
-                    "is a file of the scene, and body '" + body.name +
+                    "is an input, and body '" + body.name +
                         "' would be written to it; choose another folder for -o");
     }
     if (const auto found = taken.find(path.string()); found != taken.end()) {
-      throw IoError(
-          input, "",
-          "is a file of the scene and " + found->second + "; choose another name for the latter");
+      throw IoError(input, "",
+                    "is an input and " + found->second + "; choose another name for the latter");
     }
   }
 }
@@ -135,6 +147,30 @@ void add_adhesion_warnings(const std::string& file, const Scene& scene, Warnings
   }
 }
 
+/// Pictures and warped volumes of an earlier, longer run beside those that this run has written.
+/// @param next  number of the frame after the last one
+void add_older_frames(const std::vector<std::string>& written,
+                      std::int64_t next,
+                      Warnings& warnings) {
+  std::set<std::pair<std::string, std::string>> kinds;  // of names: before and behind the number
+  for (const std::string& path : written) {
+    const std::size_t mark = path.rfind('_') + 1, point = std::min(path.rfind('.'), path.size());
+    const bool is_numbered =
+        mark > 0 && mark < point && path.find_first_not_of("0123456789", mark) == point;
+    if (is_numbered) kinds.emplace(path.substr(0, mark), path.substr(point));
+  }
+  for (const auto& [head, tail] : kinds) {
+    const auto name = [&](std::int64_t n) { return fmt::format("{}{:04}{}", head, n, tail); };
+    std::int64_t n = next;
+    while (fs::exists(name(n))) ++n;
+    if (n == next) continue;
+    warnings.push_back(
+        fmt::format("{}: is of an earlier run, as are {} of the names that follow; "
+                    "remove them",
+                    name(next), n - next - 1));
+  }
+}
+
 std::vector<std::byte> bytes_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
@@ -153,6 +189,8 @@ SimulateRun::SimulateRun(const SimulateArguments& arguments) : arguments_(argume
   const Stopwatch reading;
   std::vector<std::string> files;
   Scene scene = load(arguments, files);
+  const std::vector<std::string> others = files_read(arguments);
+  files.insert(files.end(), others.begin(), others.end());
   choose_contact(arguments, scene);
   result_.read_seconds = reading.seconds();
   check_results(arguments, scene, files);
@@ -356,6 +394,7 @@ void SimulateRun::finish() {
   }
   result_.warnings = simulator_->scene().notes;
   add_adhesion_warnings(arguments_.scene(), simulator_->scene(), result_.warnings);
+  add_older_frames(result_.outputs, next_frame_, result_.warnings);
   if (result_.late_steps > 0) {
     result_.warnings.push_back(fmt::format(
         "{}: the solves of {} of {} steps ended by --max-step-seconds (series.h5: out_of_time)",

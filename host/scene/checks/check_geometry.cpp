@@ -14,13 +14,19 @@ namespace tetwarp {
 namespace {
 constexpr std::int64_t most_items = std::numeric_limits<std::int32_t>::max();
 
+/// Within which areas, volumes and moments of inertia are numbers.
+void check_length(const std::string& place, double length, double least = 1e-50) {
+  least > 0 ? check_positive(place, length, "m") : check_not_negative(place, length, "m");
+  check_range(place, length, least, 1e50);
+}
+
 void check_lengths(const std::string& place, const Point3& lengths) {
-  for (const double length : lengths) check_positive(place, length, "m");
+  for (const double length : lengths) check_length(place, length);
 }
 
 void check_tube(const std::string& place, double radius, double tube) {
-  check_positive(key_of(place, "radius"), radius, "m");
-  check_positive(key_of(place, "tube"), tube, "m");
+  check_length(key_of(place, "radius"), radius);
+  check_length(key_of(place, "tube"), tube);
   if (!(tube < radius)) {
     fail_at(key_of(place, "tube"),
             "is " + number_text(tube) + ", expected less than the radius " + number_text(radius));
@@ -34,12 +40,12 @@ void check_shape(const std::string& place, const EllipsoidShape& ellipsoid) {
   check_lengths(key_of(place, "radii"), ellipsoid.radii);
 }
 void check_shape(const std::string& place, const CapsuleShape& capsule) {
-  check_positive(key_of(place, "radius"), capsule.radius, "m");
-  check_not_negative(key_of(place, "length"), capsule.length, "m");
+  check_length(key_of(place, "radius"), capsule.radius);
+  check_length(key_of(place, "length"), capsule.length, 0);
 }
 void check_shape(const std::string& place, const CylinderShape& cylinder) {
-  check_positive(key_of(place, "radius"), cylinder.radius, "m");
-  check_positive(key_of(place, "length"), cylinder.length, "m");
+  check_length(key_of(place, "radius"), cylinder.radius);
+  check_length(key_of(place, "length"), cylinder.length);
 }
 void check_shape(const std::string& place, const TorusShape& torus) {
   check_tube(place, torus.radius, torus.tube);
@@ -55,10 +61,10 @@ void check_shape(const std::string& place, const ArcShape& arc) {
   }
 }
 void check_shape(const std::string& place, const BentStripShape& strip) {
-  check_positive(key_of(place, "width"), strip.width, "m");
-  check_positive(key_of(place, "height"), strip.height, "m");
-  check_positive(key_of(place, "depth"), strip.depth, "m");
-  check_finite(key_of(place, "sag"), strip.sag);
+  check_length(key_of(place, "width"), strip.width);
+  check_length(key_of(place, "height"), strip.height);
+  check_length(key_of(place, "depth"), strip.depth);
+  check_range(key_of(place, "sag"), strip.sag, -1e50, 1e50);
 }
 void check_shape(const std::string& place, const PlateShape& plate) {
   check_lengths(key_of(place, "size"), plate.size);
@@ -100,7 +106,7 @@ void check_one(const std::string& place, const Surface& surface) {
 
 void check_one(const std::string& body_place, const Sheet& sheet) {
   const std::string place = key_of(body_place, "sheet");
-  for (const double size : sheet.size) check_positive(key_of(place, "size"), size, "m");
+  for (const double size : sheet.size) check_length(key_of(place, "size"), size);
   double points = 1;
   for (const std::int64_t count : sheet.cells) {
     if (count < 1) fail_at(key_of(place, "cells"), "expected numbers from 1");

@@ -94,7 +94,9 @@ void add_rigid(const BodyPart& part, Model& model) {
   const PrincipalAxes principal = principal_axes_of(properties.inertia);
   const auto& moment = principal.moment;
   if (!(std::min({moment[0], moment[1], moment[2]}) > 0) || !is_finite(moment)) {
-    fail("the inertia of a rigid body has three positive principal moments");
+    fail(body.rigid.mass ? "inertia: not all principal moments are above 0; correct it"
+                         : "its surface is too thin: not all principal moments of inertia are "
+                           "above 0 in float64; give a thicker one, or mass and inertia");
   }
 
   model.rigid.body.push_back(part.index);
