@@ -64,7 +64,7 @@ tetwarp_sources(tetwarp host/scene/checks
 tetwarp_sources(tetwarp host/simulate/contact_step
   adhesion_record.cpp contact_history.cpp contact_impulses.cpp contact_part.cpp contact_passes.cpp
   contact_points.cpp contact_rest.cpp contact_step.cpp end_check.cpp expected_motion.cpp
-  part_motion.cpp sleeping_contacts.cpp step_groups.cpp)
+  part_motion.cpp pressing_impulses.cpp sleeping_contacts.cpp step_groups.cpp)
 tetwarp_sources(tetwarp host/simulate/model
   body_points.cpp cloth.cpp fem.cpp image_materials.cpp material_finder.cpp model.cpp motion.cpp
   nearest.cpp rigid.cpp scalar_entries.cpp springs.cpp surface_mesh.cpp tet_materials.cpp

@@ -121,6 +121,13 @@ def bond_row(columns, report, seconds):
     return row
 
 
+def close_row(columns, report, seconds):
+    """What holds the lips when they are closed: at the end of the run."""
+    row = bond_row(columns, report, seconds)
+    row.update(closed_contacts=int(columns["contacts"][-1]), closed_cm2=1e4 * float(columns["adhered_area"][-1]))
+    return row
+
+
 def warp_row(columns, report, seconds):
     """Frames of all volumes a second of processor time, with the steps between them."""
     row = step_row(columns, report, seconds)
@@ -162,6 +169,8 @@ def cases(tool):
     for name, factors in (("cloth", (0.5, 1, 2)), ("mouth", (1, 4 / 3, 5 / 3, 2))):
         for factor in factors:
             yield f"finer/{name} x {factor:.3g}", refined(json.loads(text[name]), factor), [], bond_row
+    for factor in (1, 4 / 3, 5 / 3, 2, 7 / 3, 8 / 3, 3):
+        yield f"closing/mouth x {factor:.3g}", refined(json.loads(text["mouth"]), factor), ["--steps", "30"], close_row
     for time_step, triangles in ((4e-3, 3200), (2e-3, 3200), (1e-3, 3200), (2e-3, 800), (2e-3, 12800), (5e-4, 12800)):
         yield (f"roll/{1e3 * time_step:g} ms, {triangles // 2} points", rolling(text["oranges"], time_step, triangles), [],
                roll_row)
@@ -191,6 +200,10 @@ def print_tables(rows):
             last = "" if row["last_bond"] is None else f"{row['last_bond']:.3f}"
             print(f"| {name[6:]} | {row['triangles']} | {mean:.0f}, {most} | {row['first_contact']:.3f} | {last} "
                   f"| {row['bonded_cm2']:.4g} | {1e3 * row['work']:.3g} | {row['ms']:.2g} |")
+    print("\n| | contacts when closed | bonded [cm^2] | work [mJ] |\n|---|---|---|---|")
+    for name, row in rows.items():
+        if name.startswith("closing/"):
+            print(f"| {name[8:]} | {row['closed_contacts']} | {row['closed_cm2']:.3g} | {1e3 * row['work']:.3g} |")
     print("\n| time step, points | acceleration / (5/7 g sin) | steps with stopped groups | ms |\n|---|---|---|---|")
     for name, row in rows.items():
         if name.startswith("roll/"):

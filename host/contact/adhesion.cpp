@@ -148,7 +148,8 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
 AdhesionStep evolve_adhesion(const ContactProblem& problem,
                              const ContactSolution& solution,
                              const EvolutionOptions& options,
-                             ContactDevice* device) {
+                             ContactDevice* device,
+                             std::span<const double> pressing) {
   const AdhesionState& adhesion = problem.adhesion;
   if (adhesion.empty()) return {};
   check_arguments(problem, solution, options);
@@ -163,6 +164,7 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
   for (std::size_t c = 0; c < offsets.size(); ++c) velocity[3 * c] += offsets[c];
   ContactAdhesionOp op =
       adhesion_op(adhesion, adhesion, numbers_of(solution.impulse), numbers_of(velocity), options);
+  op.in.pressing = view_of(pressing);
   op.next_intensity = view_of(step.intensity);
   op.next_gap = view_of(step.gap);
   op.debonded = {step.debonded.data(), problem.contact_count()};

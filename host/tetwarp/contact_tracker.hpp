@@ -215,11 +215,17 @@ class TETWARP_EXPORT ContactTracker {
   /// Ends the step: updates intensities, anchors and impulses of the records.
   /// @param solution  of the problem that fill() completed
   /// @param places    of all bodies at the end of the step; vertices are read during the call
+  /// @param pressing  normal impulse that presses on the area of each contact and so forms bonds,
+  ///                  [contact_count] [N s]; empty: that of the contact itself. Where contacts
+  ///                  without area stand beside those that have the area of a surface, these carry
+  ///                  less than what presses on it.
   /// @throws std::logic_error       no step has begun, or it has ended already
-  /// @throws std::invalid_argument  a body of a record has no pose, a pose, an impulse or a
-  ///                                velocity is not finite, a rotation is not of length 1, or as
-  ///                                evolve_adhesion()
-  AdhesionStep end_step(const ContactSolution& solution, std::span<const BodyPlace> places);
+  /// @throws std::invalid_argument  a body of a record has no pose, a pose, an impulse, what
+  ///                                presses or a velocity is not finite, a rotation is not of
+  ///                                length 1, `pressing` has another size, or as evolve_adhesion()
+  AdhesionStep end_step(const ContactSolution& solution,
+                        std::span<const BodyPlace> places,
+                        std::span<const double> pressing = {});
   /// Of rigid bodies alone.
   AdhesionStep end_step(const ContactSolution& solution, std::span<const BodyPose> poses);
 

@@ -95,6 +95,8 @@ struct AdhesionViews {
   View<const double> saturation_pressure;
   View<const double> impulse;               ///< r of the solve, shape [3 contacts], N s
   View<const double> velocity;              ///< u of the solve, shape [3 contacts], m/s
+  View<const double> pressing = {};         ///< normal impulse on each area, shape [contacts], N s;
+                                            ///< empty: that of `impulse`
   View<const double> velocity_offset = {};  ///< w, shape [3 contacts], m/s; empty: gap_n is dt w_n
 };
 
@@ -120,6 +122,7 @@ struct ContactAdhesionOp {
     const double gap_1 = value_or(in.gap, 3 * c + 1, 0) + dt * in.velocity[3 * c + 1];
     const double gap_2 = value_or(in.gap, 3 * c + 2, 0) + dt * in.velocity[3 * c + 2];
     const double push = in.impulse[3 * c];
+    const double press = in.pressing.size > 0 ? in.pressing[c] : push;
 
     // Twice the energy per area at beta = 1; debonding starts when it reaches W.
     double strain =
@@ -128,8 +131,8 @@ struct ContactAdhesionOp {
     const double energy = value_or(in.energy, c, 0);
     const double viscosity = in.energy.size > 0 ? value_or(in.viscosity, c, 0) : 0;
     IntensityLaw law;
-    if (push > 0 && area > 0) {
-      law.bonding = value_or(in.bonding_rate, c, 0) * (push / (dt * area));
+    if (press > 0 && area > 0) {
+      law.bonding = value_or(in.bonding_rate, c, 0) * (press / (dt * area));
       law.bonding_decay = value_or(in.bonding_rate, c, 0) * value_or(in.saturation_pressure, c, 0);
     }
     if (viscosity > 0) {
@@ -139,8 +142,8 @@ struct ContactAdhesionOp {
 
     double next = euler ? euler_intensity(law, beta, dt) : exact_intensity(law, beta, dt);
     const bool torn = strain > debond_gap_factor * debond_gap_factor * energy;
-    const bool debonds =
-        beta > 0 && viscosity > 0 && (torn || (!(push > 0) && next < debond_intensity));
+    const bool debonds = beta > 0 && viscosity > 0 &&
+                         (torn || (!(push > 0 || press > 0) && next < debond_intensity));
     if (debonds) next = 0;
     // New bonds form without tension: the gap is reduced so that the force beta^2 C g does not
     // jump; the stored energy decreases by the same factor.

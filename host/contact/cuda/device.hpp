@@ -105,11 +105,14 @@ class ContactDevice : public StructureStages {
 };
 
 /// The public evolve_adhesion() with a choice of where it runs.
-/// @param device  runs the stage; null: the host
+/// @param device    runs the stage; null: the host
+/// @param pressing  normal impulse on the area of each contact, [contact_count] [N s]; empty: that
+///                  of the solution; read on the host
 AdhesionStep evolve_adhesion(const ContactProblem& problem,
                              const ContactSolution& solution,
                              const EvolutionOptions& options,
-                             ContactDevice* device);
+                             ContactDevice* device,
+                             std::span<const double> pressing = {});
 
 /// @throws CudaError  the device cannot be used; the text is the reason given by the CUDA runtime
 std::unique_ptr<ContactDevice> make_contact_device(int device);

@@ -171,24 +171,28 @@ void check_places(std::span<const BodyPlace> places, int threads) {
   });
 }
 
-void check_solution(const ContactSolution& solution, const std::vector<TrackedContact>& contacts) {
-  const auto check = [&](const char* name, const std::vector<double>& values) {
-    if (values.size() != 3 * contacts.size()) {
-      refuse(std::string("solution.") + name, "has " + std::to_string(values.size()) +
-                                                  " numbers, expected 3 for each of " +
-                                                  std::to_string(contacts.size()) + " contacts");
+void check_solution(const ContactSolution& solution,
+                    const std::vector<TrackedContact>& contacts,
+                    std::span<const double> pressing) {
+  const auto check = [&](const std::string& name, std::span<const double> values,
+                         std::size_t count) {
+    if (values.size() != count * contacts.size()) {
+      refuse(name, "has " + std::to_string(values.size()) + " numbers, expected " +
+                       std::to_string(count) + " for each of " + std::to_string(contacts.size()) +
+                       " contacts");
     }
-    for (std::size_t row = 0; row < values.size(); ++row) {
-      if (std::isfinite(values[row])) continue;
-      const ContactKey& key = contacts[row / 3].key;
-      throw ContactKeyError(key, std::string("ContactTracker: solution.") + name + " of " +
-                                     name_of(key) + " is " + text_of(values[row]) +
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      if (std::isfinite(values[n])) continue;
+      const ContactKey& key = contacts[n / count].key;
+      throw ContactKeyError(key, "ContactTracker: " + name + " of " + name_of(key) + " is " +
+                                     text_of(values[n]) +
                                      ", expected a finite number; do not pass on a solve that "
                                      "failed");
     }
   };
-  check("impulse", solution.impulse);
-  check("velocity", solution.velocity);
+  check("solution.impulse", solution.impulse, 3);
+  check("solution.velocity", solution.velocity, 3);
+  if (!pressing.empty()) check("pressing", pressing, 1);
 }
 
 }  // namespace tetwarp

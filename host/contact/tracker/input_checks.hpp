@@ -33,6 +33,9 @@ void check_record_bodies(const ContactRecord& record, std::span<const BodyPlace>
 void check_places(std::span<const BodyPlace> places, int threads);
 
 /// Three finite impulses and velocities for each contact.
-void check_solution(const ContactSolution& solution, const std::vector<TrackedContact>& contacts);
+/// @param pressing  one finite number for each contact, or empty
+void check_solution(const ContactSolution& solution,
+                    const std::vector<TrackedContact>& contacts,
+                    std::span<const double> pressing);
 
 }  // namespace tetwarp

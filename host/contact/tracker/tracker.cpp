@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "host/base/parallel.hpp"
+#include "host/contact/cuda/device.hpp"
 #include "host/contact/tracker/geometry.hpp"
 #include "host/contact/tracker/input_checks.hpp"
 #include "host/contact/tracker/match.hpp"
@@ -206,7 +207,8 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
 }
 
 AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
-                                      std::span<const BodyPlace> places) {
+                                      std::span<const BodyPlace> places,
+                                      std::span<const double> pressing) {
   if (!is_in_step_) {
     throw std::logic_error(
         "ContactTracker: end_step() without a step, call begin_step() before each end_step()");
@@ -214,9 +216,9 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
   check_places(places, options_.threads);
   for_contacts(options_.threads, records_.size(),
                [&](std::size_t c) { check_record_bodies(records_[c], places); });
-  check_solution(solution, contacts_);
+  check_solution(solution, contacts_, pressing);
   fill(problem_);
-  AdhesionStep step = evolve_adhesion(problem_, solution, options_.evolution);
+  AdhesionStep step = evolve_adhesion(problem_, solution, options_.evolution, nullptr, pressing);
   next_records_.resize(records_.size());
   for_contacts(options_.threads, records_.size(), [&](std::size_t c) {
     ContactRecord& record = next_records_[c];
@@ -224,7 +226,8 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
     const double before = record.intensity;
     record.intensity = record.area > 0 ? step.intensity[c] : 0;
     carry_anchor(record, contacts_[c], time_step_, places);
-    if (!record.has_touched && record.area > 0 && solution.impulse[3 * c] > 0) {
+    const bool is_pressed = solution.impulse[3 * c] > 0 || (!pressing.empty() && pressing[c] > 0);
+    if (!record.has_touched && record.area > 0 && is_pressed) {
       record.has_touched = true;
       const auto material = static_cast<std::size_t>(record.material);
       record.intensity = std::max(record.intensity, options_.materials[material].initial_intensity);

@@ -28,7 +28,9 @@ ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces, int threads
 }  // namespace
 
 ContactHistory::ContactHistory(const SceneSurfaces& surfaces, int threads)
-    : options_(tracker_options(surfaces, threads)), tracker_(options_) {}
+    : options_(tracker_options(surfaces, threads)),
+      tracker_(options_),
+      pressing_(surfaces) {}
 
 void ContactHistory::set_time_step(double time_step) {
   if (time_step_ > 0 && time_step_ != time_step) {
@@ -61,7 +63,8 @@ const std::vector<TrackedContact>& ContactHistory::track(std::vector<ReportedCon
 
 AdhesionStep ContactHistory::end_part(const ContactSolution& solution,
                                       const std::vector<BodyPlace>& bodies) {
-  return tracker_.end_step(solution, bodies);
+  return tracker_.end_step(solution, bodies,
+                           pressing_.spread(*contacts_, tracker_.records(), solution.impulse));
 }
 
 void ContactHistory::set_records(std::vector<ContactRecord> records) {

@@ -5,6 +5,7 @@
 
 #include <tetwarp/contact_tracker.hpp>
 
+#include "host/simulate/contact_step/pressing_impulses.hpp"
 #include "host/simulate/surfaces/scene_surfaces.hpp"
 
 namespace tetwarp {
@@ -54,6 +55,7 @@ class ContactHistory {
  private:
   ContactTrackerOptions options_;
   ContactTracker tracker_;
+  PressingImpulses pressing_;
   const std::vector<TrackedContact>* contacts_ = nullptr;
   std::vector<Point3> change_;
   double time_step_ = 0;  ///< of the impulses of records and of change_ [s]

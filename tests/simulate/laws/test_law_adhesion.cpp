@@ -1,5 +1,5 @@
 /// @file test_law_adhesion.cpp
-/// Adhesion through whole steps: the force of a pull.
+/// Adhesion through whole steps: the force of a pull, and the pressure that bonds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,6 +75,62 @@ TEST(PullOff, ForceIsAreaTimesTheRootOfEnergyAndStiffness) {
   const double expected = 0.2 * 0.2 * std::sqrt(2 * 8e4);
   for (const int n : {1, 2, 4, 8}) {
     EXPECT_NEAR(pull_off_force(n) / expected, 1, 0.01) << n;
+  }
+}
+
+constexpr double bonding_rate = 2.5e-3, saturation = 4000;  ///< [1/(Pa s)], [Pa]
+
+Body cube(const std::string& name, BodyKind kind, double height, double angle) {
+  Body body = kind == BodyKind::rigid ? rigid_box(name, {0.1, 0.1, 0.1}, {0, 0, height})
+                                      : elastic_box(name, {0.1, 0.1, 0.1}, {2, 2, 2});
+  body.pose = {{0, 0, height}, {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}};
+  if (kind == BodyKind::rigid) body.rigid.density = 1000;
+  if (kind == BodyKind::fem) body.material = {1e7, 0.3, 1000};
+  return body;
+}
+
+/// The bonded area below the upper body, or the only one, after 0.2 s at rest.
+double bonded_by_weight(std::vector<Body> bodies, double time_step, double tolerance) {
+  const std::size_t count = bodies.size();
+  Scene scene = floor_scene(std::move(bodies), time_step, 0.3);
+  scene.thickness = 2e-5;
+  scene.solver.contact_tolerance = tolerance;
+  const AdhesionMaterial adhesion{.stiffness = 1e6,
+                                  .energy = 1,
+                                  .viscosity = 0.05,
+                                  .bonding_rate = bonding_rate,
+                                  .saturation_pressure = saturation};
+  scene.contact.pairs = {{.a = count > 1 ? "lower" : "floor",
+                          .b = "upper",
+                          .has_adhesion = true,
+                          .adhesion = adhesion}};
+  Simulator simulator(scene);
+  while (simulator.time() < 0.2 - time_step / 2) simulator.step();
+  return simulator.record().adhered_area;
+}
+
+/// beta' = r (p - beta p_0) of a pressure p on an area A ends at A p / p_0 (1 - exp(-r p_0 t)),
+/// where A p is the weight: whichever contacts carry it, whatever bodies touch how.
+TEST(Bonding, IsThatOfTheWeight) {
+  const double weight = earth * 1000 * 0.008;
+  const double expected = weight / saturation * (1 - std::exp(-bonding_rate * saturation * 0.2));
+  const BodyKind kinds[] = {BodyKind::rigid, BodyKind::fem};
+  for (const BodyKind upper : kinds) {
+    for (const double tolerance : {1e-4, 1e-7}) {
+      for (const double time_step : {5e-3, 2.5e-3}) {
+        const Body body = cube("upper", upper, 0.1 + 2e-5, 0);
+        EXPECT_NEAR(bonded_by_weight({body}, time_step, tolerance) / expected, 1, 0.03)
+            << static_cast<int>(upper) << " " << tolerance << " " << time_step;
+      }
+    }
+    for (const BodyKind lower : kinds) {
+      for (const double angle : {0.0, 0.3}) {
+        const std::vector<Body> bodies{cube("lower", lower, 0.1 + 2e-5, 0),
+                                       cube("upper", upper, 0.3 + 4e-5, angle)};
+        EXPECT_NEAR(bonded_by_weight(bodies, 5e-3, 1e-5) / expected, 1, 0.03)
+            << static_cast<int>(lower) << " under " << static_cast<int>(upper) << " " << angle;
+      }
+    }
   }
 }
 
