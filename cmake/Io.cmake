@@ -42,7 +42,7 @@ tetwarp_sources(tetwarp_io io/transforms
   field_file.cpp fsl_field.cpp itk_transform.cpp itk_transform_files.cpp transform_file.cpp)
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp itk_space.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp output_check.cpp
-  volume_file.cpp)
+  times_warning.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf
   series_reader.cpp simulation_mesh.cpp simulation_points.cpp simulation_series.cpp
   surface_file.cpp surface_reader.cpp vtkhdf_array.cpp vtkhdf_cells.cpp vtkhdf_image.cpp

@@ -258,6 +258,7 @@ void bind_files(nb::module_& module) {
       "is_surface_file",
       [](const std::string& path) { return file_call([&] { return is_surface_file(path); }); },
       nb::arg("path"));
+  module.def("times_warning", &times_warning, nb::arg("path"), nb::arg("times"));
   module.attr("vtkhdf_endings") = strings_of(vtkhdf_endings);
   module.attr("volume_endings") = strings_of(volume_endings);
   module.def("volume_header", &volume_header, nb::arg("path"));

@@ -11,6 +11,7 @@
 #include "host/base/vector_view.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/problem/checks.hpp"
+#include "host/contact/problem/pressed_adhesion.hpp"
 #include "host/contact/problem/spring_offset.hpp"
 #include "host/contact/solver_state.hpp"
 #include "host/exec/exec_cpu.hpp"

@@ -15,6 +15,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/contact/fill_report.hpp"
 #include "host/contact/problem/imbalance.hpp"
+#include "host/contact/problem/pressed_adhesion.hpp"
 #include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
 #include "host/contact/solve/status.hpp"

@@ -37,11 +37,6 @@ void set_image_steps(double count, double first, double interval, ImageHeader& h
   header.time_step = std::isfinite(interval) && interval > 0 ? interval : 1;
 }
 
-double mean_interval(const std::vector<double>& times) {
-  return times.size() < 2 ? 1
-                          : (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-}
-
 std::string shortest_text(double value) {
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};

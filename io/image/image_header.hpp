@@ -46,9 +46,6 @@ void set_image_axes(const std::array<Point3, 3>& steps,
 /// @throws std::invalid_argument  when the count is not from 1 to 2^31
 void set_image_steps(double count, double first, double interval, ImageHeader& header);
 
-/// The mean interval of times; 1 of a single one.
-double mean_interval(const std::vector<double>& times);
-
 /// The shortest text of a number that is read as the same one.
 std::string shortest_text(double value);
 

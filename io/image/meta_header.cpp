@@ -1,5 +1,6 @@
 /// @file meta_header.cpp
 /// Lines "Key = Value" of MetaImage headers, in ITK's axes: LPS.
+#include "io/files/mean_interval.hpp"
 #include "io/image/meta_header.hpp"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 /// @file nrrd_header.cpp
 /// Fields of NRRD headers; https://teem.sourceforge.net/nrrd/format.html
+#include "io/files/mean_interval.hpp"
 #include "io/image/nrrd_header.hpp"
 
 #include <algorithm>

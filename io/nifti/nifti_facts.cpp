@@ -63,6 +63,9 @@ std::string facts_problem(const NiftiFacts& facts) {
     return std::isfinite(static_cast<float>(value)) ? std::string()
                                                     : name + " is no finite number of 32 bits";
   };
+  const auto of_time_step = [](double value) {
+    return static_cast<float>(value) > 0 ? std::string() : "time_step is not above 0 in 32 bits";
+  };
   for (const std::string& problem :
        {of_code("sform_code", facts.sform_code, largest_code),
         of_code("qform_code", facts.qform_code, largest_code),
@@ -71,8 +74,9 @@ std::string facts_problem(const NiftiFacts& facts) {
         of_text("intent_name", facts.intent_name, name_bytes),
         of_text("description", facts.description, description_bytes),
         of_number("cal_min", facts.cal_min), of_number("cal_max", facts.cal_max),
-        of_number("time_step", facts.time_step), of_number("intent_p[0]", facts.intent_p[0]),
-        of_number("intent_p[1]", facts.intent_p[1]), of_number("intent_p[2]", facts.intent_p[2])}) {
+        of_number("time_step", facts.time_step), of_time_step(facts.time_step),
+        of_number("intent_p[0]", facts.intent_p[0]), of_number("intent_p[1]", facts.intent_p[1]),
+        of_number("intent_p[2]", facts.intent_p[2])}) {
     if (!problem.empty()) return "NIfTI header: " + problem;
   }
   return {};

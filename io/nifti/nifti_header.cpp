@@ -164,6 +164,11 @@ std::vector<double> times_of(const std::string& path, const NiftiFields& fields)
   return times;
 }
 
+/// Numbers of NIfTI-2 that NIfTI-1 has no place for are left out.
+bool is_kept(double value) {
+  return std::isfinite(static_cast<float>(value));
+}
+
 NiftiFacts facts_of(const NiftiFields& fields, const Grid& grid) {
   const auto code = [](std::int64_t value) {
     return static_cast<int>(std::clamp<std::int64_t>(value, 0, 32767));
@@ -176,12 +181,14 @@ NiftiFacts facts_of(const NiftiFields& fields, const Grid& grid) {
   }
   facts.xyzt_units = static_cast<int>(fields.xyzt_units & 255);
   facts.intent_code = code(fields.intent_code);
-  facts.intent_p = fields.intent_p;
+  if (std::ranges::all_of(fields.intent_p, is_kept)) facts.intent_p = fields.intent_p;
   facts.intent_name = fields.intent_name;
   facts.description = fields.descrip;
-  if (std::isfinite(fields.cal_min)) facts.cal_min = fields.cal_min;
-  if (std::isfinite(fields.cal_max)) facts.cal_max = fields.cal_max;
-  if (std::isfinite(fields.pixdim[4]) && fields.pixdim[4] > 0) facts.time_step = fields.pixdim[4];
+  if (is_kept(fields.cal_min)) facts.cal_min = fields.cal_min;
+  if (is_kept(fields.cal_max)) facts.cal_max = fields.cal_max;
+  if (is_kept(fields.pixdim[4]) && static_cast<float>(fields.pixdim[4]) > 0) {
+    facts.time_step = fields.pixdim[4];
+  }
   return facts;
 }
 
@@ -191,6 +198,9 @@ std::vector<std::string> left_out_of(const NiftiFields& fields, const NiftiFacts
   if (fields.qform_code > 0 && facts.qform_code == 0) {
     names.emplace_back("qform, which differs from the sform");
   }
+  if (!std::ranges::all_of(fields.intent_p, is_kept)) names.emplace_back("intent_p1 to 3");
+  if (!is_kept(fields.cal_min)) names.emplace_back("cal_min");
+  if (!is_kept(fields.cal_max)) names.emplace_back("cal_max");
   if (fields.dim_info != 0) names.emplace_back("dim_info");
   if (fields.slice_code != 0 || fields.slice_duration != 0 || fields.slice_end != 0) {
     names.emplace_back("times of slices (slice_code, slice_duration, slice_start, slice_end)");

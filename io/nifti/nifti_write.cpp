@@ -15,6 +15,7 @@
 
 #include "io/files/extension.hpp"
 #include "io/files/finished_file.hpp"
+#include "io/files/mean_interval.hpp"
 #include "io/files/scratch_file.hpp"
 #include "io/files/sink_checks.hpp"
 #include "io/files/volume_sink.hpp"
@@ -155,10 +156,7 @@ class NiftiSink : public VolumeSink {
     fields.pixdim[5] = 1;
     const double unit = nifti_time_unit(facts_.xyzt_units);
     if (is_temporal_) fields.toffset = times_.front() / unit;
-    if (step_count() > 1) {
-      const auto intervals = static_cast<double>(step_count() - 1);
-      fields.pixdim[4] = (times_.back() - times_.front()) / intervals / unit;
-    }
+    if (step_count() > 1) fields.pixdim[4] = mean_interval(times_) / unit;
     return fields;
   }
 

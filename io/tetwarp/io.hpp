@@ -316,6 +316,12 @@ TETWARP_IO_EXPORT bool has_nifti_name(const std::string& path);
 /// True for other names of images of one array that can be written: .nrrd, .mha, .mhd, .mgh, .mgz.
 TETWARP_IO_EXPORT bool has_image_name(const std::string& path);
 
+/// What a series loses of its times by the format of its name, in one line with a remedy: NIfTI,
+/// NRRD and MetaImage keep a first time and an interval, FreeSurfer's images none, and programs
+/// that read VTKHDF want times that increase. Empty: nothing.
+TETWARP_IO_EXPORT std::string times_warning(const std::string& output,
+                                            const std::vector<double>& times);
+
 /// True for names of VTK's XML images: .vti.
 TETWARP_IO_EXPORT bool has_vtk_image_name(const std::string& path);
 

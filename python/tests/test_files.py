@@ -1,5 +1,7 @@
 """Files are written and read back."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,24 @@ def test_several_arrays_and_steps_come_back(tmp_path):
     assert np.array_equal(tetwarp.read(tmp_path / "steps.vtkhdf", step=1), b)
 
 
+@pytest.mark.parametrize("ending", ["vtkhdf", "nii", "nii.gz", "nrrd", "mha", "mgz"])
+def test_times_come_back_or_are_named(ending, volume, tmp_path):
+    path = tmp_path / f"steps.{ending}"
+    for times in [(0, 1, 2), (0, 1, 5), (2, 1, 0), (1, 1, 1), (2, 1), (1, 1), (0.5, 2), (3, 4)]:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            tetwarp.write(path, [volume.array] * len(times), grid=volume.grid, times=times)
+        read = tetwarp.read_header(path).times  # readable, whatever they are
+        assert len(read) == len(times)
+        named = [str(one.message) for one in caught]
+        assert all("times of the steps" in text and str(path) in text for text in named)
+        assert named or np.allclose(read, times, atol=1e-3), (times, read)
+        if ending == "vtkhdf":
+            assert np.array_equal(read, times) and bool(named) == (min(np.diff(times)) <= 0)
+        elif np.allclose(read, times, atol=1e-3):
+            assert not named, (times, read)
+
+
 def test_headers_of_nifti_are_kept(tmp_path):
     volume = tetwarp.phantom("fish", (5, 6, 7))
     tetwarp.write(tmp_path / "a.nii", volume)
@@ -69,6 +89,20 @@ def test_images_of_nibabel_are_the_same(tmp_path):
 
     assert np.array_equal(read.array, np.asarray(image.dataobj).T)
     assert np.allclose(read.affine, affine)
+
+
+def test_numbers_that_nifti_1_has_no_place_for_are_left_out(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    image = nibabel.Nifti2Image(np.zeros((4, 3, 2), np.float32), np.eye(4))
+    image.header["cal_max"], image.header["cal_min"] = 1e300, -3
+    image.header["pixdim"][4] = 1e300
+    image.to_filename(tmp_path / "two.nii")
+
+    volume = tetwarp.read(tmp_path / "two.nii")
+    for name in ("one.nii", "one.vtkhdf"):
+        tetwarp.write(tmp_path / name, volume)
+        assert tetwarp.read(tmp_path / name).nifti == volume.nifti
+    assert (volume.nifti["cal_min"], volume.nifti["cal_max"]) == (-3, 0)
 
 
 def test_hdf5_of_h5py_and_of_the_library_live_together(tmp_path):
@@ -194,6 +228,9 @@ def test_texts_in_another_encoding_keep_their_bytes(volume, tmp_path):
     ({"intent_name": 17 * "x"}, "intent_name has 17 bytes, expected at most 16"),
     ({"description": 41 * "\u00e4"}, "description has 82 bytes, expected at most 80"),
     ({"cal_max": 1e39}, "cal_max is no finite number of 32 bits"),
+    ({"time_step": 0}, "time_step is not above 0"),
+    ({"time_step": -1}, "time_step is not above 0"),
+    ({"time_step": 1e-50}, "time_step is not above 0"),
 ])
 @pytest.mark.parametrize("ending", ["nii", "vtkhdf"])
 def test_what_a_header_cannot_hold_is_not_written(ending, facts, text, volume, tmp_path):

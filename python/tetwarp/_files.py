@@ -15,7 +15,7 @@ from ._grid import Grid, grid_from_core, reference_grid
 from ._mesh import Mesh, Surface, joined_cells, split_ten_nodes
 from ._packages import MeshioFile, check_default, read_image, read_surface
 from ._result import WarpResult
-from ._values import flag_of, integer_of, list_of, path_of, word_of
+from ._values import flag_of, integer_of, list_of, path_of, warn, word_of
 from ._volume import Volume, checked_volume, made_volume
 
 #: Ends of names of files that are packed by the level that `compress` gives.
@@ -222,6 +222,12 @@ def _volumes_of(result: WarpResult) -> list[Volume]:
     ]
 
 
+def _warn_of_times(path: str, times: list[float]) -> None:
+    text = _core.times_warning(path, times)
+    if text:
+        warn(text)
+
+
 def _write_volumes(
     path: str, value: Any, grid: Grid | None, times: Any, compress: int
 ) -> None:
@@ -249,6 +255,7 @@ def _write_volumes(
             if volume.name != first.name:
                 raise ValueError(f"value[{number}]: expected the name of value[0], whose steps they are")
         arrays = [_entry(first.name, [volume.array for volume in volumes], first.nifti)]
+        _warn_of_times(path, times)
     _core.write_volumes(
         path, first.grid._core(), arrays, times or [], compress,
     )
@@ -262,10 +269,9 @@ def _write_mesh(path: str, mesh: Mesh, deformed: Any, times: Any) -> None:
     if times is None:
         last = max(len(moved) - 1, 1)
         times = [number / last for number in range(len(moved))] if len(moved) != 1 else [1.0]
-    _core.write_mesh(
-        path, points, *parts, [step - points for step in moved],
-        numbers_of(times, "times", len(moved)).tolist(),
-    )
+    of_steps = numbers_of(times, "times", len(moved)).tolist()
+    _warn_of_times(path, of_steps)
+    _core.write_mesh(path, points, *parts, [step - points for step in moved], of_steps)
 
 
 def _check_ending(path: str, is_mesh: bool) -> None:

@@ -3,6 +3,7 @@
 /// packed ones, regions. Against other programs: tests/io/check_images.py.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -335,5 +336,41 @@ TEST(Images, OfFreeSurferWithoutADirectionAreCoronal) {
   EXPECT_NE(message_of<IoError>([&] { read_volume(folder / "b.mgh"); }).find("truncated"),
             std::string::npos);
 }
+/// Whatever the times, a series can be read; a line names it where they come back otherwise.
+TEST(Series, KeepTheirTimesOrSaySo) {
+  const ScratchFolder folder;
+  const Volume volume = counting_volume(PixelType::uint8, 1, "a");
+  for (const std::string name : {"a.nii", "a.nrrd", "a.mha", "a.mgz", "a.vtkhdf"}) {
+    for (const std::vector<double>& times : {std::vector<double>{0, 1, 2},
+                                             {0, 1, 5},
+                                             {2, 1, 0},
+                                             {1, 1, 1},
+                                             {2, 1},
+                                             {0.5, 2},
+                                             {7, 8}}) {
+      BlockVolumeWriter writer(folder / name, volume.grid, {{"a", PixelType::uint8, 1}}, {}, true,
+                               ChunkShape::rows);
+      for (const double time : times) {
+        writer.begin_step(time);
+        writer.write(0, {{0, 0, 0}, volume.grid.dims}, volume.data.data());
+      }
+      writer.finish();
+      const std::vector<double> read = read_volume_header(folder / name).times;
+      ASSERT_EQ(read.size(), times.size()) << name;
+      bool is_same = true;
+      for (std::size_t n = 0; n < times.size(); ++n) {
+        is_same = is_same && std::abs(read[n] - times[n]) < 1e-3;
+      }
+      const std::string warning = times_warning(folder / name, times);
+      if (name == "a.vtkhdf") {
+        EXPECT_TRUE(is_same);
+        EXPECT_EQ(warning.empty(), times[1] > times[0]) << warning;
+      } else {
+        EXPECT_EQ(warning.empty(), is_same) << name << " " << times[1] << " " << warning;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetwarp::test

@@ -42,6 +42,7 @@ DECLARED_IN = {
     "io/tetwarp/io.hpp": [
         "io/fclib/fclib_contact.cpp", "io/fclib/fclib_write.cpp", "io/files/names.cpp",
         "io/picture/png_image.cpp", "io/volume/file_kind.cpp", "io/volume/mesh_reader.cpp",
+        "io/volume/times_warning.cpp",
         "io/volume/volume_file.cpp", "io/vtkhdf/vtkhdf_write.cpp",
         "io/vtkhdf/vtkhdf_write_mesh.cpp"],
     "io/tetwarp/scene_io.hpp": ["io/scene/scene_file.cpp", "io/vtkhdf/surface_file.cpp"],

@@ -51,34 +51,6 @@ std::string steps_text(const Steps& steps) {
   if (steps.size() > 1) text += fmt::format(" and {} more", steps.size() - 1);
   return text;
 }
-
-/// Times that are not equally spaced, of a NIfTI series; empty when they are.
-std::string uneven_times(const std::string& output, const std::vector<double>& times) {
-  const auto last = static_cast<double>(times.size()) - 1;
-  if (last < 2) return {};
-  const double mean = (times.back() - times.front()) / last;
-  for (std::size_t step = 1; step < times.size(); ++step) {
-    const double expected = times.front() + mean * static_cast<double>(step);
-    if (std::abs(times[step] - expected) <= 1e-3 * std::abs(mean)) continue;
-    return fmt::format(
-        "{}: the times of the steps are not equally spaced, images keep the mean interval {:g}; "
-        "write VTKHDF to keep the times",
-        output, mean);
-  }
-  return {};
-}
-
-/// Times that do not increase; empty when they do.
-std::string unordered_times(const std::string& output, const std::vector<double>& times) {
-  for (std::size_t step = 1; step < times.size(); ++step) {
-    if (times[step] > times[step - 1]) continue;
-    return fmt::format(
-        "{}: the times of the steps do not increase: {:g} is followed by {:g}; programs that show "
-        "the file leave out steps or order them by time; correct the times of the mesh",
-        output, times[step - 1], times[step]);
-  }
-  return {};
-}
 }  // namespace
 
 Warnings mesh_warnings(const std::string& path,
@@ -227,20 +199,6 @@ Warnings step_warnings(const std::string& mesh,
                     mesh, steps_text(uncovered)));
   }
   return warnings;
-}
-
-std::string times_warning(const std::string& output, const std::vector<double>& times) {
-  if (has_extension(output, ".mgz") || has_extension(output, ".mgh")) {
-    for (std::size_t step = 0; step < times.size(); ++step) {
-      if (times[step] == static_cast<double>(step)) continue;
-      return output +
-             ": images of FreeSurfer number their frames, the times of the steps are lost; write "
-             ".nii.gz, .nrrd or VTKHDF";
-    }
-    return {};
-  }
-  const bool keeps_interval = has_nifti_name(output) || has_image_name(output);
-  return keeps_interval ? uneven_times(output, times) : unordered_times(output, times);
 }
 
 void refuse_warnings(const Warnings& warnings) {

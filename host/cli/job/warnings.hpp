@@ -66,10 +66,6 @@ Warnings step_warnings(const std::string& mesh,
                        std::int64_t mesh_steps,
                        std::span<const StepReport> steps);
 
-/// Times of the steps of a series that its format or its readers do not keep: in NIfTI those that
-/// are not equally spaced, in VTKHDF those that do not increase. Empty when there are none.
-std::string times_warning(const std::string& output, const std::vector<double>& times);
-
 /// For --strict: throws std::runtime_error with the first warning, if there is one.
 void refuse_warnings(const Warnings& warnings);
 

@@ -104,16 +104,6 @@ class ContactDevice : public StructureStages {
   virtual void write(const double* host, std::int64_t size, double* device, void* stream) = 0;
 };
 
-/// The public evolve_adhesion() with a choice of where it runs.
-/// @param device    runs the stage; null: the host
-/// @param pressing  normal impulse on the area of each contact, [contact_count] [N s]; empty: that
-///                  of the solution; read on the host
-AdhesionStep evolve_adhesion(const ContactProblem& problem,
-                             const ContactSolution& solution,
-                             const EvolutionOptions& options,
-                             ContactDevice* device,
-                             std::span<const double> pressing = {});
-
 /// @throws CudaError  the device cannot be used; the text is the reason given by the CUDA runtime
 std::unique_ptr<ContactDevice> make_contact_device(int device);
 

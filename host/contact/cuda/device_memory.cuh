@@ -71,7 +71,7 @@ inline AdhesionViews adhesion_on_device(CudaExec& exec,
       exec, host,
       {&In::area, &In::stiffness, &In::tangential_stiffness, &In::intensity, &In::gap, &In::energy,
        &In::viscosity, &In::bonding_rate, &In::saturation_pressure, &In::impulse, &In::velocity,
-       &In::velocity_offset},
+       &In::pressing, &In::velocity_offset},
       arrays);
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "host/base/parallel.hpp"
-#include "host/contact/cuda/device.hpp"
+#include "host/contact/problem/pressed_adhesion.hpp"
 #include "host/contact/tracker/geometry.hpp"
 #include "host/contact/tracker/input_checks.hpp"
 #include "host/contact/tracker/match.hpp"

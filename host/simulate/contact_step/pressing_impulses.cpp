@@ -90,7 +90,8 @@ std::span<const double> PressingImpulses::spread(std::span<const TrackedContact>
     if (forms_bonds(records[c])) order_.push_back(c);
   }
   if (order_.empty()) return {};
-  std::ranges::stable_sort(order_, {}, [&](std::size_t c) { return bodies_of(contacts[c]); });
+  std::ranges::sort(order_, {},
+                    [&](std::size_t c) { return std::pair(bodies_of(contacts[c]), c); });
   for (std::size_t first = 0; first < order_.size();) {
     std::size_t last = first;
     while (last < order_.size() &&
@@ -120,7 +121,7 @@ void PressingImpulses::spread_patches(const Step& step, std::span<const std::siz
   for (const std::size_t c : pair) {
     if (is_patch_point(step.contacts[c].key) && step.records[c].area > 0) points_.push_back(c);
   }
-  std::ranges::stable_sort(points_, {}, slot);
+  std::ranges::sort(points_, {}, [&](std::size_t c) { return std::pair(slot(c), c); });
   for (std::size_t first = 0; first < points_.size();) {
     std::size_t last = first;
     while (last < points_.size() && slot(points_[last]) == slot(points_[first])) ++last;
@@ -142,40 +143,36 @@ void PressingImpulses::spread_over_nodes(const Step& step,
                                          std::span<const std::size_t> pair,
                                          bool of_a,
                                          double share) {
-  const auto for_each = [&](const auto& visit) {
-    for (const std::size_t c : pair) {
-      if (!step.touches(c)) continue;
-      for (const Node& node : nodes_of(step.contacts[c], of_a)) visit(c, node);
-    }
-  };
-  for_each([&](std::size_t c, const Node& node) {
-    NodeSum& sum = sum_of(node.number);
-    sum.impulse += node.weight * step.impulse(c);
-    sum.area += node.weight * step.records[c].area;
-  });
-  for_each([&](std::size_t c, const Node& node) {
-    const NodeSum& sum = sum_of(node.number);
-    if (!(sum.area > 0)) return;
-    pressing_[c] += share * node.weight * step.records[c].area * (sum.impulse / sum.area);
-  });
-  for_each([&](std::size_t, const Node& node) { sum_of(node.number) = {}; });
+  entries_.clear();
+  for (const std::size_t c : pair) {
+    if (step.touches(c)) list_nodes(step.contacts[c], of_a, c);
+  }
+  for (const Entry& entry : entries_) {
+    NodeSum& sum = sum_of(entry.node);
+    sum.impulse += entry.weight * step.impulse(entry.contact);
+    sum.area += entry.weight * step.records[entry.contact].area;
+  }
+  for (const Entry& entry : entries_) {
+    const NodeSum& sum = sum_of(entry.node);
+    if (!(sum.area > 0)) continue;
+    const double part = entry.weight * step.records[entry.contact].area / sum.area;
+    pressing_[entry.contact] += share * part * sum.impulse;
+  }
+  for (const Entry& entry : entries_) sum_of(entry.node) = {};
 }
 
-/// The nodes that one side of a contact moves with.
-std::span<const PressingImpulses::Node> PressingImpulses::nodes_of(const TrackedContact& contact,
-                                                                   bool of_a) {
-  const MaterialPoint& point = of_a ? contact.material_a : contact.material_b;
-  const std::int32_t body = of_a ? contact.key.body_a : contact.key.body_b;
+/// Lists the nodes that one side of a contact moves with.
+void PressingImpulses::list_nodes(const TrackedContact& of, bool of_a, std::size_t contact) {
+  const MaterialPoint& point = of_a ? of.material_a : of.material_b;
+  const std::int32_t body = of_a ? of.key.body_a : of.key.body_b;
   const std::int32_t first = at(surfaces_.surfaces.bodies, body).first_vertex;
-  nodes_.clear();
   for (std::size_t v = 0; v < 3 && point.vertex[v] >= 0; ++v) {
     const ModelPoint& vertex = at(surfaces_.vertex_point, first + point.vertex[v]);
     for (std::size_t n = 0; n < 4 && vertex.node[n] >= 0; ++n) {
       const double weight = point.weight[v] * vertex.weight[n];
-      if (weight > 0) nodes_.push_back({vertex.node[n], weight});
+      if (weight > 0) entries_.push_back({contact, vertex.node[n], weight});
     }
   }
-  return nodes_;
 }
 
 PressingImpulses::NodeSum& PressingImpulses::sum_of(std::int32_t node) {

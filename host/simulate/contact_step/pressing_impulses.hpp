@@ -47,8 +47,10 @@ class PressingImpulses {
     double impulse(std::size_t c) const { return impulses[3 * c]; }
     bool touches(std::size_t c) const { return contacts[c].gap[0] <= open; }
   };
-  struct Node {
-    std::int32_t number;
+  /// A node that a contact moves with.
+  struct Entry {
+    std::size_t contact;
+    std::int32_t node;
     double weight;
   };
   struct NodeSum {
@@ -63,13 +65,13 @@ class PressingImpulses {
                          bool of_a,
                          double share);
   NodeSum& sum_of(std::int32_t node);
-  std::span<const Node> nodes_of(const TrackedContact& contact, bool of_a);
+  void list_nodes(const TrackedContact& of, bool of_a, std::size_t contact);
 
   const SceneSurfaces& surfaces_;
   bool has_bonding_ = false;
   std::vector<double> pressing_;
   std::vector<std::size_t> order_, points_;  ///< contacts
-  std::vector<Node> nodes_;                  ///< of one contact
+  std::vector<Entry> entries_;               ///< of one side of a pair
   std::vector<NodeSum> sums_;                ///< [nodes of the model], zero between calls
 };
 
