@@ -30,7 +30,7 @@ ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces, int threads
 ContactHistory::ContactHistory(const SceneSurfaces& surfaces, int threads)
     : options_(tracker_options(surfaces, threads)),
       tracker_(options_),
-      pressing_(surfaces) {}
+      pressing_(surfaces, options_.materials) {}
 
 void ContactHistory::set_time_step(double time_step) {
   if (time_step_ > 0 && time_step_ != time_step) {

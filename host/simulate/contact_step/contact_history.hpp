@@ -28,6 +28,7 @@ class ContactHistory {
                                            const std::vector<BodyPlace>& bodies,
                                            bool has_initial_bonds);
   /// Ends the part that track() began.
+  /// @param solution  of the contacts that track() returned
   /// @param bodies  at its end
   AdhesionStep end_part(const ContactSolution& solution, const std::vector<BodyPlace>& bodies);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "host/base/point3.hpp"
@@ -11,17 +12,6 @@
 
 namespace tetwarp {
 namespace {
-constexpr double cosine_20 = 0.9396926207859084;  ///< of one patch, as in RigidPatches
-
-bool is_patch_point(const ContactKey& key) {
-  return key.feature_b == RigidPatches::first_feature;
-}
-
-/// The patch of an adhesion point among those of its bodies.
-std::int32_t slot_of(const ContactKey& key) {
-  return (RigidPatches::first_feature - key.feature_a) / 4;
-}
-
 std::pair<std::int32_t, std::int32_t> bodies_of(const TrackedContact& contact) {
   return {contact.key.body_a, contact.key.body_b};
 }
@@ -30,7 +20,8 @@ Point3 middle_of(const TrackedContact& contact) {
   return times(0.5, plus(contact.point_a_world, contact.point_b_world));
 }
 
-/// Shares of a load among the points of a patch, by which force and moment stay what they are.
+/// Shares of a load among the points of a patch, by which force and moment stay what they are; of
+/// points on a line the force.
 class PatchShares {
  public:
   PatchShares(std::span<const TrackedContact> contacts, std::span<const std::size_t> points)
@@ -68,28 +59,24 @@ class PatchShares {
 };
 }  // namespace
 
-PressingImpulses::PressingImpulses(const SceneSurfaces& surfaces)
-    : surfaces_(surfaces),
-      has_bonding_(std::ranges::any_of(
-          surfaces.materials, [](const ContactMaterial& of) { return of.bonding_rate > 0; })) {}
-
-/// The tracker has every material twice.
-bool PressingImpulses::forms_bonds(const ContactRecord& record) const {
-  const std::size_t count = surfaces_.materials.size();
-  return surfaces_.materials[static_cast<std::size_t>(record.material) % count].bonding_rate > 0;
+PressingImpulses::PressingImpulses(const SceneSurfaces& surfaces,
+                                   std::span<const ContactMaterial> materials)
+    : surfaces_(surfaces) {
+  for (const ContactMaterial& material : materials) {
+    forms_bonds_.push_back(material.bonding_rate > 0);
+  }
 }
 
 std::span<const double> PressingImpulses::spread(std::span<const TrackedContact> contacts,
                                                  std::span<const ContactRecord> records,
                                                  std::span<const double> impulses) {
-  if (!has_bonding_) return {};
   const Step step{contacts, records, impulses, 0.1 * surfaces_.surfaces.thickness};
-  pressing_.assign(contacts.size(), 0);
   order_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (forms_bonds(records[c])) order_.push_back(c);
+    if (forms_bonds_[static_cast<std::size_t>(records[c].material)]) order_.push_back(c);
   }
   if (order_.empty()) return {};
+  pressing_.assign(contacts.size(), 0);
   std::ranges::sort(order_, {},
                     [&](std::size_t c) { return std::pair(bodies_of(contacts[c]), c); });
   for (std::size_t first = 0; first < order_.size();) {
@@ -108,44 +95,105 @@ void PressingImpulses::spread_pair(const Step& step, std::span<const std::size_t
   const ContactKey& key = step.contacts[pair[0]].key;
   const bool is_rigid_a = at(surfaces_.surfaces.bodies, key.body_a).is_rigid;
   const bool is_rigid_b = at(surfaces_.surfaces.bodies, key.body_b).is_rigid;
-  if (is_rigid_a && is_rigid_b) return spread_patches(step, pair);
-  const double share = is_rigid_a || is_rigid_b ? 1 : 0.5;
-  if (!is_rigid_a) spread_over_nodes(step, pair, true, share);
-  if (!is_rigid_b) spread_over_nodes(step, pair, false, share);
-}
-
-/// Each patch takes the contacts of the pair with about its normal.
-void PressingImpulses::spread_patches(const Step& step, std::span<const std::size_t> pair) {
-  const auto slot = [&](std::size_t c) { return slot_of(step.contacts[c].key); };
-  points_.clear();
-  for (const std::size_t c : pair) {
-    if (is_patch_point(step.contacts[c].key) && step.records[c].area > 0) points_.push_back(c);
-  }
-  std::ranges::sort(points_, {}, [&](std::size_t c) { return std::pair(slot(c), c); });
-  for (std::size_t first = 0; first < points_.size();) {
+  divide(step, pair, is_rigid_a && is_rigid_b);
+  for (std::size_t first = 0; first < members_.size();) {
+    group_.clear();
     std::size_t last = first;
-    while (last < points_.size() && slot(points_[last]) == slot(points_[first])) ++last;
-    const auto points = std::span(points_).subspan(first, last - first);
-    const Point3& normal = step.contacts[points[0]].axes[0];
-    const PatchShares shares(step.contacts, points);
-    for (const std::size_t c : pair) {
-      if (!step.touches(c) || dot(step.contacts[c].axes[0], normal) <= cosine_20) continue;
-      for (const std::size_t p : points) {
-        if (!step.touches(p)) continue;
-        pressing_[p] += step.impulse(c) * shares.share(step.contacts[c], step.contacts[p]);
-      }
+    for (; last < members_.size() && members_[last].first == members_[first].first; ++last) {
+      group_.push_back(members_[last].second);
+    }
+    if (is_rigid_a && is_rigid_b) {
+      spread_patch(step);
+    } else if (key.body_a == key.body_b) {
+      spread_over_nodes(step, true, true, 0.5);
+    } else {
+      const double share = is_rigid_a || is_rigid_b ? 1 : 0.5;
+      if (!is_rigid_a) spread_over_nodes(step, true, false, share);
+      if (!is_rigid_b) spread_over_nodes(step, false, true, share);
     }
     first = last;
   }
 }
 
-void PressingImpulses::spread_over_nodes(const Step& step,
-                                         std::span<const std::size_t> pair,
-                                         bool of_a,
-                                         double share) {
-  entries_.clear();
+/// Divides the contacts of a pair by the area they press on: the patches of rigid bodies, else
+/// areas that face within about 45 degrees. A contact belongs to the one with the nearest normal.
+void PressingImpulses::divide(const Step& step,
+                              std::span<const std::size_t> pair,
+                              bool has_patches) {
+  const ContactKey& key = step.contacts[pair[0]].key;
+  // Which side of a contact of a body with itself is a depends on its features.
+  const bool is_turned = key.body_a == key.body_b;
+  areas_.clear();
+  const auto nearest = [&](const TrackedContact& contact, double least) {
+    std::size_t best = areas_.size();
+    for (std::size_t n = 0; n < areas_.size(); ++n) {
+      const double cosine = dot(contact.axes[0], areas_[n].normal);
+      const double near = is_turned ? std::abs(cosine) : cosine;
+      if (near < least) continue;
+      least = near;
+      best = n;
+    }
+    return best;
+  };
+  const auto of_slot = [&](std::int32_t slot) {
+    const auto found = std::ranges::find(areas_, slot, &Area::slot);
+    return static_cast<std::size_t>(found - areas_.begin());
+  };
   for (const std::size_t c : pair) {
-    if (step.touches(c)) list_nodes(step.contacts[c], of_a, c);
+    const TrackedContact& contact = step.contacts[c];
+    if (!(step.records[c].area > 0)) continue;
+    const std::int32_t slot = has_patches ? RigidPatches::slot_of(contact.key) : -1;
+    const bool is_known =
+        has_patches ? of_slot(slot) < areas_.size() : nearest(contact, cosine_45) < areas_.size();
+    if (!is_known) areas_.push_back({contact.axes[0], slot});
+  }
+  members_.clear();
+  for (const std::size_t c : pair) {
+    const TrackedContact& contact = step.contacts[c];
+    const bool is_point = has_patches && RigidPatches::is_point(contact.key);
+    const std::size_t area =
+        is_point ? of_slot(RigidPatches::slot_of(contact.key)) : nearest(contact, cosine_45);
+    if (area < areas_.size()) members_.emplace_back(area, c);
+  }
+  std::ranges::sort(members_);
+}
+
+/// In a step that closes the patch, its points touch where they are no more open than what pushes.
+/// Where the line of the load leaves the patch, points are not pressed by less than nothing.
+void PressingImpulses::spread_patch(const Step& step) {
+  double open = step.open;
+  for (const std::size_t c : group_) {
+    if (step.impulse(c) > 0) open = std::max(open, step.gap(c) + step.open);
+  }
+  points_.clear();
+  for (const std::size_t c : group_) {
+    if (step.records[c].area > 0 && step.gap(c) <= open) points_.push_back(c);
+  }
+  if (points_.empty()) return;
+  const PatchShares shares(step.contacts, points_);
+  double sum = 0, positive = 0;
+  for (const std::size_t p : points_) {
+    for (const std::size_t c : group_) {
+      if (step.gap(c) > open) continue;
+      pressing_[p] += step.impulse(c) * shares.share(step.contacts[c], step.contacts[p]);
+    }
+    sum += pressing_[p];
+    positive += std::max(0.0, pressing_[p]);
+  }
+  const double scale = sum > 0 ? sum / positive : 0;
+  for (const std::size_t p : points_) pressing_[p] = scale * std::max(0.0, pressing_[p]);
+}
+
+void PressingImpulses::spread_over_nodes(const Step& step, bool of_a, bool of_b, double share) {
+  entries_.clear();
+  for (const std::size_t c : group_) {
+    if (step.gap(c) > step.open) {
+      pressing_[c] = std::max(0.0, step.impulse(c));
+      continue;
+    }
+    const TrackedContact& contact = step.contacts[c];
+    if (of_a) list_nodes(c, contact.material_a, contact.key.body_a);
+    if (of_b) list_nodes(c, contact.material_b, contact.key.body_b);
   }
   for (const Entry& entry : entries_) {
     NodeSum& sum = sum_of(entry.node);
@@ -162,9 +210,9 @@ void PressingImpulses::spread_over_nodes(const Step& step,
 }
 
 /// Lists the nodes that one side of a contact moves with.
-void PressingImpulses::list_nodes(const TrackedContact& of, bool of_a, std::size_t contact) {
-  const MaterialPoint& point = of_a ? of.material_a : of.material_b;
-  const std::int32_t body = of_a ? of.key.body_a : of.key.body_b;
+void PressingImpulses::list_nodes(std::size_t contact,
+                                  const MaterialPoint& point,
+                                  std::int32_t body) {
   const std::int32_t first = at(surfaces_.surfaces.bodies, body).first_vertex;
   for (std::size_t v = 0; v < 3 && point.vertex[v] >= 0; ++v) {
     const ModelPoint& vertex = at(surfaces_.vertex_point, first + point.vertex[v]);

@@ -17,16 +17,19 @@ namespace tetwarp {
 ///
 /// Many distributions of impulses have the same effect on the bodies: which of them a solve finds
 /// is a matter of its tolerance, and contacts without area carry a part of any size. Bonds form by
-/// a pressure that all of them have in common. Between two rigid bodies it is linear over each
-/// patch (see RigidPatches) and has the force and moment of the patch's contacts. Else it is, at
-/// each node of a deformable body, the force on the node over its part of the area, interpolated
-/// between nodes as the surface is; of two deformable bodies the mean of both. The sum stays, but
-/// for forces on nodes without area. Contacts that are open by more than a tenth of the thickness
-/// at the start of the step take no part.
+/// a pressure that all of them have in common, on areas that face one way. Between two rigid bodies
+/// it is linear over each patch (see RigidPatches) and has the force and moment of the patch's
+/// contacts; where that would pull at a point, the others have the force. Else it is, at each node
+/// of a deformable body, the force on the node over its part of the area, interpolated between
+/// nodes as the surface is; of two deformable bodies the mean of both. Forces on nodes without area
+/// are left out. A contact that is open by more than a tenth of the thickness at the start of the
+/// step, and closes within it, keeps its own impulse; in a patch, if it is more open than all that
+/// push, it has none.
 class PressingImpulses {
  public:
-  /// @param surfaces  kept by the caller
-  explicit PressingImpulses(const SceneSurfaces& surfaces);
+  /// @param surfaces   kept by the caller
+  /// @param materials  of the tracker
+  PressingImpulses(const SceneSurfaces& surfaces, std::span<const ContactMaterial> materials);
 
   /// @param contacts  of the step, sorted by key
   /// @param records   of these contacts
@@ -42,10 +45,14 @@ class PressingImpulses {
     std::span<const TrackedContact> contacts;
     std::span<const ContactRecord> records;
     std::span<const double> impulses;
-    double open;  ///< gap beyond which contacts do not touch [m]
+    double open;  ///< gap beyond which contacts do not touch at the start of the step [m]
 
     double impulse(std::size_t c) const { return impulses[3 * c]; }
-    bool touches(std::size_t c) const { return contacts[c].gap[0] <= open; }
+    double gap(std::size_t c) const { return contacts[c].gap[0]; }
+  };
+  struct Area {
+    Point3 normal;      ///< of its first contact
+    std::int32_t slot;  ///< of a patch
   };
   /// A node that a contact moves with.
   struct Entry {
@@ -57,22 +64,21 @@ class PressingImpulses {
     double impulse = 0, area = 0;
   };
 
-  bool forms_bonds(const ContactRecord& record) const;
   void spread_pair(const Step& step, std::span<const std::size_t> pair);
-  void spread_patches(const Step& step, std::span<const std::size_t> pair);
-  void spread_over_nodes(const Step& step,
-                         std::span<const std::size_t> pair,
-                         bool of_a,
-                         double share);
+  void divide(const Step& step, std::span<const std::size_t> pair, bool has_patches);
+  void spread_patch(const Step& step);
+  void spread_over_nodes(const Step& step, bool of_a, bool of_b, double share);
+  void list_nodes(std::size_t contact, const MaterialPoint& point, std::int32_t body);
   NodeSum& sum_of(std::int32_t node);
-  void list_nodes(const TrackedContact& of, bool of_a, std::size_t contact);
 
   const SceneSurfaces& surfaces_;
-  bool has_bonding_ = false;
+  std::vector<bool> forms_bonds_;  ///< [materials]
   std::vector<double> pressing_;
-  std::vector<std::size_t> order_, points_;  ///< contacts
-  std::vector<Entry> entries_;               ///< of one side of a pair
-  std::vector<NodeSum> sums_;                ///< [nodes of the model], zero between calls
+  std::vector<std::size_t> order_, group_, points_;           ///< contacts; group_: of one area
+  std::vector<Area> areas_;                                   ///< of one pair
+  std::vector<std::pair<std::size_t, std::size_t>> members_;  ///< areas and their contacts
+  std::vector<Entry> entries_;                                ///< of one group
+  std::vector<NodeSum> sums_;  ///< [nodes of the model], zero between calls
 };
 
 }  // namespace tetwarp

@@ -32,6 +32,10 @@ class RigidPatches {
   /// first_feature - 3, those of the second the next four, and so on; the feature of body b is
   /// always first_feature.
   static constexpr std::int32_t first_feature = -1000;
+  /// Whether a contact is an adhesion point.
+  static bool is_point(const ContactKey& key) { return key.feature_b == first_feature; }
+  /// The number of the patch of an adhesion point among those of its bodies.
+  static std::int32_t slot_of(const ContactKey& key) { return (first_feature - key.feature_a) / 4; }
 
   /// @param scene, areas  kept by the caller
   RigidPatches(const SceneSurfaces& scene, const TouchAreas& areas)
