@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <mutex>
+#include <new>
 
 #include "python/interpreter_lock.hpp"
 
@@ -15,12 +16,14 @@ inline std::mutex& file_mutex() {
   return one_at_a_time;
 }
 
-/// A fork waits for the call that runs, so that its child finds files and the mutex at rest. Calls
-/// end without the interpreter's lock, which the forking thread holds, and start programs by
-/// posix_spawn(), which calls no such handlers.
+/// A fork waits for the call that runs, so that its child finds files and the mutex at rest. A call
+/// gives the mutex back before it takes the interpreter's lock, so that a forking thread, which
+/// holds that lock, can wait for it. Programs are started by posix_spawn(), which runs no such
+/// handlers. However often the module is imported, they are registered once.
 inline void make_files_survive_forks() {
-  pthread_atfork([] { file_mutex().lock(); }, [] { file_mutex().unlock(); },
-                 [] { file_mutex().unlock(); });
+  static const int error = pthread_atfork(
+      [] { file_mutex().lock(); }, [] { file_mutex().unlock(); }, [] { file_mutex().unlock(); });
+  if (error != 0) throw std::bad_alloc();
 }
 
 /// Runs a call without the interpreter's lock, and no two at a time: HDF5 may be built without

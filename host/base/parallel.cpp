@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -144,12 +145,18 @@ class ThreadPool {
 
 /// Never destroyed: its threads use it until the process ends. The child of a fork, which has none
 /// of them, and may have its mutex locked for ever, gets a new one.
-ThreadPool* current_pool = new ThreadPool;
-[[maybe_unused]] const int renews_in_children =
-    pthread_atfork(nullptr, nullptr, [] { current_pool = new ThreadPool; });
+ThreadPool*& current_pool() {
+  static ThreadPool* pool = [] {
+    if (pthread_atfork(nullptr, nullptr, [] { current_pool() = new ThreadPool; }) != 0) {
+      throw std::bad_alloc();
+    }
+    return new ThreadPool;
+  }();
+  return pool;
+}
 
 ThreadPool& thread_pool() {
-  return *current_pool;
+  return *current_pool();
 }
 }  // namespace
 

@@ -160,7 +160,8 @@ struct ContactAdhesionOp {
 /// Advances the intensity of every contact by one time step and moves its tangential anchors.
 ///
 /// A contact debonds, beta = 0, if debonding is on (energy and viscosity > 0) and C g^2 exceeds
-/// `debond_gap_factor`^2 W, or if in traction its intensity falls below `debond_intensity`. The law
+/// `debond_gap_factor`^2 W, or if its intensity falls below `debond_intensity` while nothing
+/// presses on it. The law
 /// alone would converge to W / (C g^2) > 0.
 /// @param exec  where to run
 /// @param body  inputs and outputs, shapes as in AdhesionState and AdhesionStep

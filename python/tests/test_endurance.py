@@ -104,6 +104,25 @@ def test_threads_warp_side_by_side_with_objects_of_their_own(volume, mesh):
     assert all(np.array_equal(a, b) for a, b in zip(results, expected))
 
 
+def test_a_module_that_is_imported_again_lets_processes_fork():
+    code = """
+import os, signal, sys
+import tetwarp
+for name in [name for name in sys.modules if name.startswith("tetwarp")]:
+    del sys.modules[name]
+import tetwarp
+signal.alarm(20)
+child = os.fork()
+if child == 0:
+    os._exit(0)
+assert os.waitpid(child, 0)[1] == 0
+"""
+    done = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, timeout=60,
+                          env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+
 def test_a_fork_warps_on(volume, mesh, twisted):
     expected = tetwarp.warp(volume, *mesh, twisted, threads=2).volume
     warper = tetwarp.Warper(volume, *mesh, threads=2)

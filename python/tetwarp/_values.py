@@ -92,6 +92,8 @@ def number_of(value: Any, name: str) -> float:
 def exact_of(value: Any, name: str) -> float:
     """A number to which samples are compared: a whole one that float64 would round is refused."""
     number = number_of(value, name)
+    if isinstance(value, np.ndarray):
+        value = value.item()
     if isinstance(value, (int, np.integer)) and int(number) != value:
         raise ValueError(f"{name}: expected a number that float64 holds, got {value}")
     return number
@@ -115,7 +117,7 @@ def integer_of(value: Any, name: str, most: int = 2**31 - 1) -> int:
 def warn(text: str) -> None:
     """Gives a RuntimeWarning at the line that called the package."""
     level, frame = 1, sys._getframe()
-    while frame.f_back and frame.f_globals["__name__"].startswith(f"{__package__}."):
+    while frame.f_back and frame.f_globals.get("__name__", "").startswith(f"{__package__}."):
         level, frame = level + 1, frame.f_back
     warnings.warn(text, RuntimeWarning, stacklevel=level)
 

@@ -51,7 +51,7 @@ void check_files(const view::ViewOptions& options) {
   std::vector<std::string> inputs, outputs;
   if (!options.scene_file.empty()) read_scene(options.scene_file, &inputs);
   for (const std::string& device : CLI::detail::split(options.devices, ',')) {
-    if (!device.empty()) inputs.push_back(device);
+    if (fs::exists(device)) inputs.push_back(device);
   }
   for (const std::string& file :
        {options.scene_file, options.replay, options.restart, options.key, options.screens}) {

@@ -16,7 +16,8 @@ constexpr std::int64_t most_items = std::numeric_limits<std::int32_t>::max();
 
 /// Within which areas, volumes and moments of inertia are numbers.
 void check_length(const std::string& place, double length, double least = 1e-50) {
-  least > 0 ? check_positive(place, length, "m") : check_not_negative(place, length, "m");
+  if (least > 0) check_positive(place, length, "m");
+  check_not_negative(place, length, "m");
   check_range(place, length, least, 1e50);
 }
 
