@@ -166,10 +166,10 @@ def cases(tool):
         options = ["--warp", "--intensity", "density", "--outputs", "mask", "--steps", str(steps)]
         yield f"volumes/{name}", json.loads(text[name]), options, warp_row
     # The lips of coarser lattices cross.
-    for name, factors in (("cloth", (0.5, 1, 2)), ("mouth", (1, 4 / 3, 5 / 3, 2))):
+    for name, factors in (("cloth", (0.5, 1, 2)), ("mouth", (1, 4 / 3))):
         for factor in factors:
             yield f"finer/{name} x {factor:.3g}", refined(json.loads(text[name]), factor), [], bond_row
-    for factor in (1, 4 / 3, 5 / 3, 2, 7 / 3, 8 / 3, 3):
+    for factor in (1, 4 / 3, 5 / 3, 2):
         yield f"closing/mouth x {factor:.3g}", refined(json.loads(text["mouth"]), factor), ["--steps", "30"], close_row
     for time_step, triangles in ((4e-3, 3200), (2e-3, 3200), (1e-3, 3200), (2e-3, 800), (2e-3, 12800), (5e-4, 12800)):
         yield (f"roll/{1e3 * time_step:g} ms, {triangles // 2} points", rolling(text["oranges"], time_step, triangles), [],
