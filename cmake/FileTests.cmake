@@ -124,6 +124,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_bad_layouts.cpp
   tests/cli/test_cli_batch.cpp
+  tests/cli/test_cli_batch_defaults.cpp
   tests/cli/test_cli_batch_order.cpp
   tests/cli/test_cli_field_batch.cpp
   tests/cli/test_cli_certify.cpp

@@ -44,6 +44,16 @@ Names lines_of(const std::string& text) {
   return lines;
 }
 
+/// "job N: " of the jobs that are not run.
+Names refused_jobs(const std::string& text) {
+  static const std::regex line("tetwarp: (job [0-9]+: )is not run: job 1 failed, which writes");
+  Names jobs;
+  for (std::sregex_iterator at(text.begin(), text.end(), line), end; at != end; ++at) {
+    jobs.push_back((*at)[1]);
+  }
+  return jobs;
+}
+
 /// A scene whose mesh has one step, shifted by one voxel.
 class BatchOrder : public testing::Test {
  protected:
@@ -188,6 +198,52 @@ TEST_F(BatchOrder, SaysWhatOneAfterTheOtherSays) {
     EXPECT_EQ(alone.err.find("tetwarp: job 1: conservative: rounding") == std::string::npos,
               options.empty());
     EXPECT_NE(alone.out.find("job 2: 12 x 10 x 8 voxels by affine transform"), std::string::npos);
+  }
+}
+
+/// What a failed job may have been to write is not read by later jobs; files of other names are,
+/// though their names begin alike.
+TEST_F(BatchOrder, RefusesInputsThatAFailedJobWrites) {
+  constexpr const char* unplanned = "none.vtkhdf";  // a mesh that is missing
+  for (const std::string stem : {"ct", "v1"}) {
+    for (const bool has_error : {false, true}) {
+      // An array of a job with an error may have any name.
+      const std::vector<std::pair<std::string, bool>> inputs{
+          {".nii", true},         {"_0000.nii", true},      {"_12345.nii", true},
+          {"_mask.nii", true},    {"_0003_mask.nii", true}, {"_left.nii", has_error},
+          {"_2.nii", false},      {"_001.nii", false},      {"0.nii", false},
+          {"_0000.nii.gz", false}};
+      std::vector<Row> rows{{"volume.nii", has_error ? "mesh.vtkhdf" : unplanned, stem + ".nii",
+                             has_error ? "none" : "0"}};
+      Names refused;
+      for (const auto& [end, is_written] : inputs) {
+        Volume volume = ramp_volume<float>();
+        write_nifti(scene / (stem + end), volume);
+        rows.push_back({stem + end, "one.vtkhdf", "o" + std::to_string(rows.size()) + ".nii"});
+        if (is_written) refused.push_back("job " + std::to_string(rows.size()) + ": ");
+      }
+      const CommandResult alone = run(rows, {"--outputs", "mask"});
+
+      EXPECT_EQ(refused_jobs(alone.err), refused) << alone.err;
+      const CommandResult beside = run(rows, {"--outputs", "mask", "--jobs", "3"});
+      EXPECT_EQ(lines_of(beside.err), lines_of(alone.err));
+    }
+  }
+}
+
+/// Of several volumes the outputs have their names, in a folder.
+TEST_F(BatchOrder, RefusesInputsInTheFolderOfAFailedJob) {
+  fs::create_directory(scene / "out");
+  write_nifti(scene / "ct.nii", ramp_volume<float>());
+  for (const char* background : {"0", "none"}) {
+    std::vector<Row> rows{{"volume.nii;ct.nii", "none.vtkhdf", "out", background}};
+    for (const char* input : {"out/ct.nii", "out/ct_0001.nii", "out/ct_2.nii", "out/ct2.nii"}) {
+      write_nifti(scene / input, ramp_volume<float>());
+      rows.push_back({input, "one.vtkhdf", "o" + std::to_string(rows.size()) + ".nii"});
+    }
+    const CommandResult result = run(rows, {});
+
+    EXPECT_EQ(refused_jobs(result.err), (Names{"job 2: ", "job 3: "})) << result.err;
   }
 }
 }  // namespace

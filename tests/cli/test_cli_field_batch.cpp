@@ -204,5 +204,63 @@ TEST_F(FieldBatch, PlansAndRefusesJobs) {
   }
   EXPECT_FALSE(exists("jobs/a.nii"));
 }
+
+/// Of a field that an earlier job makes, the defaults that it takes are known when its job starts:
+/// also where there was none before, or another one.
+TEST_F(FieldBatch, DecidesDefaultsWhenAJobStarts) {
+  made({"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "fields.nii", "--outputs", "displacement",
+        "--temporal"});
+  for (const char* step : {"1", "3"}) {
+    made({"warp", "volume.vtkhdf", "fields_displacement.nii", "-o",
+          std::string("alone") + step + ".nii", "--steps", step});
+  }
+  write_text(scene / "jobs.csv",
+             "volume,mesh,transform,output,steps,outputs,temporal\n"
+             "volume.vtkhdf,mesh.vtkhdf,,new.nii,0:4,displacement,true\n"
+             "volume.vtkhdf,mesh.vtkhdf,,w.vtkhdf,3,displacement,\n"
+             "volume.vtkhdf,,new_displacement.nii,several.nii,,,\n"
+             "volume.vtkhdf,,w.vtkhdf,single.nii,,,\n"
+             "volume.vtkhdf,w.vtkhdf,,mesh_key.nii,,,\n");
+  for (const char* jobs : {"1", "3"}) {
+    for (const std::string step : {"1", "3"}) {
+      made({"warp", "--batch", "jobs.csv", "--jobs", jobs, "--steps", step, "--device", "0",
+            "--report", "all.json"});
+      EXPECT_EQ(sha256_of_file(scene / "several.nii"),
+                sha256_of_file(scene / ("alone" + step + ".nii")));
+      const auto reports = nlohmann::json::parse(text_of(scene / "all.json"))["jobs"];
+      for (const auto& report : reports) {
+        const int job = report["job"];
+        const Names expected = job < 3    ? Names{}
+                               : job == 3 ? Names{"--device=0"}
+                                          : Names{"--steps=" + step, "--device=0"};
+        EXPECT_EQ(report.value("defaults_left_out", Names{}), expected) << report;
+      }
+    }
+    for (const std::string& name : scene.names()) {
+      if (*jobs == '1' && !name.starts_with("alone") && name != "jobs.csv" && name != "jobs" &&
+          name != "volume.vtkhdf" && name != "mesh.vtkhdf") {
+        fs::remove(scene / name);
+      }
+    }
+  }
+}
+
+/// A transform that cannot be read is an error of its job, whatever the defaults.
+TEST_F(FieldBatch, RunsTheOthersBesideATransformThatCannotBeRead) {
+  made({"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "w.nii", "--outputs", "displacement",
+        "--steps", "3"});
+  fs::create_directory(scene / "folder");
+  write_text(scene / "empty.nii", "");
+  for (const char* transform : {"folder", "jobs.csv", "empty.nii", "none.nii"}) {
+    write_text(scene / "jobs.csv", std::string("volume,transform,output\nvolume.vtkhdf,") +
+                                       transform + ",one.nii\n" +
+                                       "volume.vtkhdf,w_displacement.nii,two.nii\n");
+    const CommandResult result =
+        run_command(scene, {"warp", "--batch", "jobs.csv", "--axes", "lps"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.err.find("tetwarp: job 1: "), std::string::npos) << result.err;
+    EXPECT_TRUE(fs::remove(scene / "two.nii")) << transform << result.err;
+  }
+}
 }  // namespace
 }  // namespace tetwarp::test

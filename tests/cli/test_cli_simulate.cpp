@@ -164,10 +164,15 @@ TEST(Simulate, DrawsPictures) {
   EXPECT_FALSE(fs::exists(scene.in("out", "scene_0002.png")));
   EXPECT_EQ(result.err, "");
 
-  const CommandResult shorter =
-      scene.simulate({"-o", "out", "--picture", "--pixels", "120,80", "--steps", "0"});
-  EXPECT_NE(shorter.err.find("scene_0001.png: is of an earlier run"), std::string::npos)
-      << shorter.err;
+  // The numbers in names that the user gives are not those of frames.
+  write_text(scene.in("out", "run_0001.vtkhdf"), "");
+  const CommandResult shorter = scene.simulate({"-o", "out", "--picture", "--pixels", "120,80",
+                                                "--steps", "0", "--contacts", "out/run_12.vtkhdf"});
+  ASSERT_EQ(shorter.exit_code, 0) << shorter.err;
+  const auto report = nlohmann::json::parse(text_of(scene.in("out", "report.json")));
+  const std::string warnings = report["warnings"].dump();
+  EXPECT_NE(warnings.find("scene_0001.png: is of an earlier run"), std::string::npos) << warnings;
+  EXPECT_EQ(warnings.find("run_0001.vtkhdf"), std::string::npos) << warnings;
 }
 
 /// A camera of the scene by its name shows what the same camera by its numbers shows.

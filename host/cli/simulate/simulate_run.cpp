@@ -148,16 +148,14 @@ void add_adhesion_warnings(const std::string& file, const Scene& scene, Warnings
 }
 
 /// Pictures and warped volumes of an earlier, longer run beside those that this run has written.
-/// @param next  number of the frame after the last one
+/// @param written  of this run, NAME_NNNN.EXTENSION
+/// @param next     number of the frame after the last one
 void add_older_frames(const std::vector<std::string>& written,
                       std::int64_t next,
                       Warnings& warnings) {
   std::set<std::pair<std::string, std::string>> kinds;  // of names: before and behind the number
   for (const std::string& path : written) {
-    const std::size_t mark = path.rfind('_') + 1, point = std::min(path.rfind('.'), path.size());
-    const bool is_numbered =
-        mark > 0 && mark < point && path.find_first_not_of("0123456789", mark) == point;
-    if (is_numbered) kinds.emplace(path.substr(0, mark), path.substr(point));
+    kinds.emplace(path.substr(0, path.rfind('_') + 1), path.substr(path.rfind('.')));
   }
   for (const auto& [head, tail] : kinds) {
     const auto name = [&](std::int64_t n) { return fmt::format("{}{:04}{}", head, n, tail); };
@@ -381,20 +379,23 @@ void SimulateRun::finish() {
   series_file_.reset();
   if (contacts_) contacts_->close();
   if (!arguments_.checkpoint.empty()) write_checkpoint();
+  std::vector<std::string> numbered;  // the files of frames, without the film
   if (pictures_ && result_.frames > 0) {
+    numbered = pictures_->paths();
     pictures_->finish();
     result_.outputs.insert(result_.outputs.end(), pictures_->paths().begin(),
                            pictures_->paths().end());
     result_.draw_seconds = pictures_->seconds();
   }
   if (warps_) {
+    numbered.insert(numbered.end(), warps_->paths().begin(), warps_->paths().end());
     result_.outputs.insert(result_.outputs.end(), warps_->paths().begin(), warps_->paths().end());
     result_.warp_seconds = warps_->warp_seconds();
     result_.write_seconds += warps_->write_seconds();
   }
   result_.warnings = simulator_->scene().notes;
   add_adhesion_warnings(arguments_.scene(), simulator_->scene(), result_.warnings);
-  add_older_frames(result_.outputs, next_frame_, result_.warnings);
+  add_older_frames(numbered, next_frame_, result_.warnings);
   if (result_.late_steps > 0) {
     result_.warnings.push_back(fmt::format(
         "{}: the solves of {} of {} steps ended by --max-step-seconds (series.h5: out_of_time)",

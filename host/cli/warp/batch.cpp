@@ -142,15 +142,18 @@ double planned_memory(const BatchJob& job) {
 /// Jobs as processes, at most some of them at a time, as far as their memory fits.
 class SideBySide {
  public:
-  /// @param waits  of waits_of_jobs()
-  SideBySide(const std::vector<BatchJob>& jobs,
+  /// @param waits     of waits_of_jobs()
+  /// @param defaults  as of read_batch()
+  SideBySide(std::vector<BatchJob>& jobs,
              std::vector<std::vector<Wait>> waits,
              const WarpArguments& shared,
+             const CLI::App& defaults,
              Outcome& outcome)
       : jobs_(jobs),
         waits_(std::move(waits)),
         states_(jobs.size(), JobState::open),
         shared_(shared),
+        defaults_(defaults),
         outcome_(outcome),
         folder_(std::filesystem::temp_directory_path() /
                 fmt::format("tetwarp-batch-{}", getpid())) {
@@ -247,17 +250,28 @@ class SideBySide {
         ++n;
         continue;
       }
-      const std::string missing = missing_input(waits, states_);
-      if (missing.empty()) {
-        if (!next.is_planned) next.memory = planned_memory(jobs_[next.index]);
-        next.is_planned = true;
+      const std::string problem = problem_of(next, waits);
+      if (!problem.empty()) {
+        refuse(next.index, problem);
+      } else {
         if (!fits(next)) return;
         start(next);
-      } else {
-        refuse(next.index, missing);
       }
       waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(n));
     }
+  }
+
+  /// Why a job that has waited is not run; reads and plans it again, where it is. Empty: it is run.
+  std::string problem_of(Waiting& next, const std::vector<Wait>& waits) {
+    if (next.is_planned) return {};
+    std::string missing = missing_input(waits, states_);
+    if (!missing.empty()) return missing;
+    BatchJob& job = jobs_[next.index];
+    read_again(shared_.batch, defaults_, job);
+    if (!job.error.empty()) return job.error;
+    next.memory = planned_memory(job);
+    next.is_planned = true;
+    return {};
   }
 
   std::string report_of(std::size_t index) const {
@@ -318,10 +332,11 @@ class SideBySide {
     outcome_.reports.push_back(report);
   }
 
-  const std::vector<BatchJob>& jobs_;
+  std::vector<BatchJob>& jobs_;
   std::vector<std::vector<Wait>> waits_;
   std::vector<JobState> states_;
   const WarpArguments& shared_;
+  const CLI::App& defaults_;
   Outcome& outcome_;
   std::filesystem::path folder_;  ///< of the jobs' reports
   double available_ = 0;          ///< [byte] when the batch began
@@ -329,15 +344,17 @@ class SideBySide {
   std::vector<Running> running_;
 };
 
-void run_one_by_one(const std::vector<BatchJob>& jobs,
+void run_one_by_one(std::vector<BatchJob>& jobs,
                     const std::vector<std::vector<Wait>>& waits,
                     const WarpArguments& shared,
+                    const CLI::App& defaults,
                     Outcome& outcome) {
   std::vector<JobState> states(jobs.size(), JobState::open);
   for (std::size_t j = 0; j < jobs.size() && !is_interrupted(); ++j) {
     const int number = static_cast<int>(j) + 1, failed = outcome.failed;
     const std::string missing = missing_input(waits[j], states);
     if (missing.empty()) {
+      if (!waits[j].empty() && jobs[j].error.empty()) read_again(shared.batch, defaults, jobs[j]);
       run_job(jobs[j], number, shared.quiet, outcome);
     } else {
       fail(outcome, name_of_job(number), report_head(jobs[j], number), missing);
@@ -350,16 +367,16 @@ void run_one_by_one(const std::vector<BatchJob>& jobs,
 
 int run_batch(const WarpArguments& shared, const CLI::App& defaults) {
   const InterruptFlag interrupts_set_a_flag;
-  const std::vector<BatchJob> jobs = read_batch(shared.batch, defaults);
+  std::vector<BatchJob> jobs = read_batch(shared.batch, defaults);
   const std::vector<JobFiles> files = files_of_jobs(jobs);
   check_collisions(jobs, files, shared);
   const std::vector<std::vector<Wait>> waits = waits_of_jobs(files);
   Outcome outcome;
   if (shared.jobs > 1 && !shared.dry_run) {
-    SideBySide(jobs, waits, shared, outcome).run();
+    SideBySide(jobs, waits, shared, defaults, outcome).run();
     write_report(shared.report, outcome, !is_interrupted());
   } else {
-    run_one_by_one(jobs, waits, shared, outcome);
+    run_one_by_one(jobs, waits, shared, defaults, outcome);
   }
   if (!shared.quiet) {
     fmt::print("{} done, {} failed, {} skipped\n", outcome.done, outcome.failed, outcome.skipped);

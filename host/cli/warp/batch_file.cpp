@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
+#include <tetwarp/backend.hpp>
 #include <tetwarp/io.hpp>
 #include <tetwarp/transform_file.hpp>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/warp/batch_list.hpp"
 #include "host/cli/warp/transform_job.hpp"
+#include "host/cli/warp/warp_job.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -96,7 +98,7 @@ class JobReader {
       options.insert(options.end(), some.begin(), some.end());
     }
     for (const CLI::Option* option : defaults_.get_options()) {
-      if (!is_default(*option) || job.contains(option->get_lnames().front())) continue;
+      if (!is_default(*option) || sets(job, option->get_lnames().front())) continue;
       const bool is_taken = refusal(*option, job, is_by_transform).empty();
       const Words some = words_of_default(*option);
       Words& all = is_taken ? options : left_out;
@@ -109,8 +111,7 @@ class JobReader {
   /// Also where a file cannot be opened: the job reports what is wrong with it.
   static bool is_nifti_or_unreadable(const std::string& file) {
     try {
-      std::error_code error;
-      return !fs::exists(file, error) || kind_of(file) == FileKind::nifti;
+      return !is_there(file) || kind_of(file) == FileKind::nifti;
     } catch (const IoError&) {
       return true;
     }
@@ -129,31 +130,29 @@ class JobReader {
     return false;
   }
 
-  /// Why a job does not take a default, with a remedy; empty: it takes it.
+  /// Why a job does not take a default, with a remedy; empty: it takes it, or its files, which an
+  /// earlier job may write, are not there to tell.
   std::string refusal(const CLI::Option& option, const Json& job, bool is_by_transform) const {
     const std::string& name = option.get_lnames().front();
     if (!job.is_object()) return {};
+    const Words files = located_names(job, deformation_key(job));
     if (is_by_transform && (name == "axes" || name == "steps")) {
-      const std::vector<std::string> files = located_names(job, deformation_key(job));
-      const auto exists = [](const std::string& file) {
-        std::error_code error;
-        return fs::exists(file, error);
-      };
-      const bool is_there = !files.empty() && std::ranges::all_of(files, exists);
-      if (name == "axes") return is_there ? axes_refusal(files.back()) : "";
-      if (is_there && has_steps_or_error(files.back())) return {};
+      if (files.empty() || !std::ranges::all_of(files, is_there)) return {};
+      if (name == "axes") return axes_refusal_of(files.back());
+      if (has_steps_or_error(files.back())) return {};
     }
     if (is_by_transform && name != "fsl") {
       const bool has_provenance = job.contains("provenance")
                                       ? job["provenance"] == true
                                       : defaults_.get_option("--provenance")->count() > 0;
-      return transform_refusal(name, option.results(), has_provenance);
+      const std::string reason = transform_refusal(name, option.results(), has_provenance);
+      if (!reason.empty()) return reason;
     }
-    for (const std::string& file : located_names(job, deformation_key(job))) {
+    for (const std::string& file : files) {
       if (name != "fsl" || is_nifti_or_unreadable(file)) continue;
       return "--fsl is for warp fields of FSL, which are NIfTI images; leave it out";
     }
-    return {};
+    return refusal_beside(name, job);
   }
 
   /// Throws IoError for a default that no job takes.
@@ -186,6 +185,74 @@ class JobReader {
   /// The key of the file that deforms the volume.
   static std::string deformation_key(const Json& job) {
     return job.contains("transform") ? "transform" : "mesh";
+  }
+
+  static bool is_there(const std::string& file) {
+    std::error_code error;
+    return fs::exists(file, error);
+  }
+
+  /// The value of an option for a job: its own, or the default; empty: none.
+  std::string value_of(const Json& job, const std::string& name) const {
+    if (!job.contains(name)) {
+      const CLI::Option& option = *defaults_.get_option("--" + name);
+      return option.count() > 0 ? option.results().front() : "";
+    }
+    return job[name].is_string() ? job[name].get<std::string>() : job[name].dump();
+  }
+
+  /// Whether a job sets what an option sets: --like is another name of --grid.
+  static bool sets(const Json& job, const std::string& name) {
+    return job.contains(name) || (name == "grid" && job.contains("like")) ||
+           (name == "like" && job.contains("grid"));
+  }
+
+  /// The word or the file of which a job takes its grid; empty: none is given.
+  std::string grid_base(const Json& job) const {
+    for (const char* const key : {"like", "grid"}) {
+      const std::string value = sets(job, key) && !job.contains(key) ? "" : value_of(job, key);
+      if (value.empty() || is_one_of(value, {"same", "bounds"})) continue;
+      return job.contains(key) ? located(value) : value;
+    }
+    return {};
+  }
+
+  /// Why a default cannot stand beside the other options and the files of a job.
+  std::string refusal_beside(const std::string& name, const Json& job) const {
+    if (name == "device" || (name == "backend" && job.contains("device"))) {
+      const std::string backend = value_of(job, "backend");
+      const Words taken{"", name_of(Backend::automatic), name_of(Backend::cuda)};
+      if (is_one_of(backend, taken)) return {};
+      return "--device is of cuda, --backend is " + backend + "; leave out one";
+    }
+    if (name == "series" && !may_have_series(located_names(job, "volume"))) {
+      return "--series is for folders of DICOM images; leave it out";
+    }
+    const std::string base = grid_base(job);
+    if (name == "like-series" && (base.empty() || !may_have_series({base}))) {
+      return "--like-series is of the folder of DICOM images that --like names; add --like FOLDER, "
+             "or leave it out";
+    }
+    const bool has_report = job.contains("report") || defaults_.get_option("--report")->count() > 0;
+    if (name != "count-folded" || has_report) return {};
+    return std::string("--count-folded ") + count_folded_refusal;
+  }
+
+  /// Whether one is a folder, or is not there to tell.
+  static bool may_have_series(const Words& paths) {
+    return std::ranges::any_of(paths, [](const std::string& path) {
+      std::error_code error;
+      return !is_there(path) || fs::is_directory(path, error);
+    });
+  }
+
+  /// A field that cannot be read is an error of its job.
+  static std::string axes_refusal_of(const std::string& transform) {
+    try {
+      return axes_refusal(transform);
+    } catch (const IoError&) {
+      return {};
+    }
   }
 
   /// A field that cannot be read is an error of its job.
@@ -255,25 +322,37 @@ class JobReader {
 
 std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults) {
   const JobReader reader(fs::path(path).parent_path(), defaults);
-  std::vector<BatchJob> jobs;
-  const std::string name = path + ": ";
   const std::vector<Json> list = read_job_list(path);
   std::vector<bool> are_by_transform;
   for (const Json& job : list) are_by_transform.push_back(reader.is_by_transform(job));
   reader.check_defaults(path, list, are_by_transform);
-  for (std::size_t j = 0; j < list.size(); ++j) {
+  std::vector<BatchJob> jobs;
+  for (const Json& job : list) {
     BatchJob& parsed = jobs.emplace_back();
-    reader.name_files(list[j], parsed);
-    try {
-      parsed.words = reader.words_of(list[j], are_by_transform[j], parsed.left_out);
-      parsed.arguments = parse_warp_arguments(parsed.words);
-    } catch (const CLI::ParseError& error) {
-      parsed.error = name + one_line(error.what());
-    } catch (const std::invalid_argument& error) {
-      parsed.error = name + one_line(error.what());
-    }
+    parsed.keys = job;
+    reader.name_files(job, parsed);
+    read_again(path, defaults, parsed);
   }
   return jobs;
+}
+
+void read_again(const std::string& path, const CLI::App& defaults, BatchJob& job) {
+  const JobReader reader(fs::path(path).parent_path(), defaults);
+  job.left_out.clear();
+  job.error.clear();
+  try {
+    job.words = reader.words_of(job.keys, reader.is_by_transform(job.keys), job.left_out);
+    job.arguments = parse_warp_arguments(job.words);
+    const bool is_reported =
+        !job.arguments.report.empty() || defaults.get_option("--report")->count() > 0;
+    if (job.arguments.warp.count_folded && !is_reported) {
+      throw CLI::ValidationError("--count-folded", count_folded_refusal);
+    }
+  } catch (const CLI::ParseError& error) {
+    job.error = path + ": " + one_line(error.what());
+  } catch (const std::invalid_argument& error) {
+    job.error = path + ": " + one_line(error.what());
+  }
 }
 
 }  // namespace tetwarp::cli

@@ -8,14 +8,16 @@
 #include <filesystem>
 #include <map>
 #include <stdexcept>
+#include <string_view>
+#include <tetwarp/io.hpp>
 #include <utility>
 
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/job/job_plan.hpp"
-#include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/provenance.hpp"
 #include "host/cli/warp/transform_job.hpp"
+#include "io/files/extension.hpp"
 #include "io/files/numbered_files.hpp"
 
 namespace tetwarp::cli {
@@ -30,19 +32,65 @@ void add_read(const std::string& path, std::set<std::string>& reads) {
   }
 }
 
+/// Names that the output of a volume in a folder may have: the volume's, or with the ending of what
+/// its format becomes.
+std::vector<SplitName> names_in_folder(const std::string& folder, const std::string& volume) {
+  std::filesystem::path path = std::filesystem::absolute(volume).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();  // a slash at the end
+  const std::string whole = canonical_path(folder) + "/" + path.filename().string();
+  std::vector<SplitName> names{{whole, ".nii.gz"}, split_name(whole)};
+  SplitName plain = names.back();
+  if (has_extension(whole, ".gz")) plain = split_name(plain.stem);
+  for (const char* const extension : {".nii.gz", ".nrrd", ".mgz"}) {
+    names.push_back({plain.stem, extension});
+  }
+  return names;
+}
+
+std::vector<SplitName> names_of_output(const std::string& output,
+                                       const std::vector<std::string>& volumes) {
+  if (output.empty()) return {};
+  if (volumes.size() < 2) {
+    const SplitName name = split_name(output);
+    return {{canonical_path(name.stem), name.extension}};
+  }
+  std::vector<SplitName> names;
+  for (const std::string& volume : volumes) {
+    const std::vector<SplitName> some = names_in_folder(output, volume);
+    names.insert(names.end(), some.begin(), some.end());
+  }
+  return names;
+}
+
+/// The arrays that a job can write; none where a volume cannot be read.
+std::optional<std::set<std::string>> arrays_of(const WarpArguments& arguments) {
+  std::set<std::string> arrays;
+  for (const std::size_t e : arguments.extra) arrays.insert(extra_outputs[e].array());
+  VolumeReadOptions read;
+  read.series = arguments.series;
+  try {
+    for (const std::string& volume : arguments.volumes()) {
+      for (const ArrayHeader& array : read_volume_header(volume, read).arrays) {
+        arrays.insert(array.name);
+      }
+    }
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return arrays;
+}
+
 JobFiles files_of_job(const BatchJob& job) {
   JobFiles files;
-  std::vector<std::string> writes;
   if (!job.error.empty()) {
     if (!job.output.empty()) files.writes = {canonical_path(job.output)};
-    files.is_planned = true;
+    files.outputs = names_of_output(job.output, job.volumes);
     return files;
   }
   const WarpArguments& arguments = job.arguments;
+  std::vector<std::string> writes;
   for (const std::string& input : arguments.inputs()) add_read(input, files.reads);
-  const bool is_folder = arguments.volumes().size() > 1;
-  files.stem = is_folder ? canonical_path(arguments.output) + "/"
-                         : canonical_path(split_name(arguments.output).stem);
+  files.outputs = names_of_output(arguments.output, arguments.volumes());
   try {
     writes =
         names_transform(arguments) ? transform_job_files(arguments) : plan_job(arguments).outputs();
@@ -51,6 +99,7 @@ JobFiles files_of_job(const BatchJob& job) {
     throw;
   } catch (const std::exception&) {
     writes = {arguments.output};
+    files.arrays = arrays_of(arguments);
   }
   for (const std::string& file : files_to_write(arguments, writes)) {
     files.writes.insert(canonical_path(file));
@@ -58,8 +107,38 @@ JobFiles files_of_job(const BatchJob& job) {
   return files;
 }
 
+/// Whether the part of a name between stem and extension is empty or of an array.
+/// @param arrays  as of JobFiles
+bool is_array_part(std::string_view part, const std::optional<std::set<std::string>>& arrays) {
+  if (part.empty()) return true;
+  if (!part.starts_with('_')) return false;
+  const std::string name(part.substr(1));
+  if (arrays) return arrays->contains(name) || arrays->contains("tetwarp_" + name);
+  return name.find_first_not_of("0123456789") != std::string::npos;
+}
+
+/// Whether a file is called STEM[_NNNN][_ARRAY]EXTENSION[.json], arrays only where the format holds
+/// one.
+bool is_output(const JobFiles& job, const SplitName& output, std::string_view file) {
+  const std::string_view beside = ".json", digits = "0123456789";
+  if (!file.starts_with(output.stem)) return false;
+  file.remove_prefix(output.stem.size());
+  if (file.ends_with(beside)) file.remove_suffix(beside.size());
+  if (!file.ends_with(output.extension)) return false;
+  file.remove_suffix(output.extension.size());
+  const bool has_one = holds_one_array(output.stem + output.extension);
+  const auto is_array = [&](std::string_view part) {
+    return has_one ? is_array_part(part, job.arrays) : part.empty();
+  };
+  constexpr std::size_t mark_and_digits = 5;
+  const std::size_t end = std::min(file.find_first_not_of(digits, 1), file.size());
+  const bool is_step = file.starts_with('_') && end >= mark_and_digits;
+  return is_array(file) || (is_step && is_array(file.substr(end)));
+}
+
 bool may_write(const JobFiles& job, const std::string& file) {
-  return job.writes.contains(file) || (!job.is_planned && file.starts_with(job.stem));
+  const auto is_of = [&](const SplitName& output) { return is_output(job, output, file); };
+  return job.writes.contains(file) || (!job.is_planned && std::ranges::any_of(job.outputs, is_of));
 }
 
 /// One of these files that a job may write; null: none.
@@ -79,7 +158,9 @@ std::vector<JobFiles> files_of_jobs(const std::vector<BatchJob>& jobs) {
   const std::vector<std::vector<Wait>> waits = waits_of_jobs(all);
   for (std::size_t j = 0; j < all.size(); ++j) {
     const auto is_made = [](const Wait& wait) { return !wait.input.empty(); };
-    all[j].is_planned = all[j].is_planned && std::ranges::none_of(waits[j], is_made);
+    if (std::ranges::none_of(waits[j], is_made)) continue;
+    all[j].is_planned = false;
+    all[j].arrays.reset();
   }
   return all;
 }

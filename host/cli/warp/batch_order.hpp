@@ -2,10 +2,12 @@
 /// Files that the jobs of a batch read and write, and which job has to wait for which.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/warp_arguments.hpp"
 #include "host/cli/warp/batch_file.hpp"
 
@@ -17,8 +19,10 @@ struct JobFiles {
   /// As planned from the files that are there: outputs, with --provenance the files beside them,
   /// and the report. Of a job that cannot be planned, or has an error, the output that it names.
   std::set<std::string> writes;
-  bool is_planned = false;
-  std::string stem;  ///< with which the names of all outputs begin
+  bool is_planned = false;         ///< else it may write more: see `outputs`
+  std::vector<SplitName> outputs;  ///< names that may have a step and an array before the extension
+  /// That it may write to files of their own; none: not known.
+  std::optional<std::set<std::string>> arrays;
 };
 
 /// Of each job. Where an earlier job writes what a job reads, the plan of that job is not trusted.

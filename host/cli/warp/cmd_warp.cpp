@@ -29,9 +29,6 @@ int run_warp(WarpArguments arguments) {
     if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
     return 0;
   }
-  if (arguments.warp.count_folded && arguments.report.empty()) {
-    throw std::invalid_argument("--count-folded needs --report, which it adds to; add it");
-  }
   Ranks ranks = Ranks::start();
   const int devices = ranks.count() > 1 ? device_count() : 0;
   if (devices > 1) arguments.warp.device = launched_local_rank() % devices;
@@ -74,6 +71,10 @@ void add_warp_command(CLI::App& app, Run& run) {
     if (arguments->batch.empty() && launched_count() > 1 && names_transform(*arguments)) {
       throw CLI::ValidationError("TRANSFORM",
                                  "runs without mpirun; --threads divides a warp by a transform");
+    }
+    if (arguments->batch.empty() && arguments->warp.count_folded && arguments->report.empty() &&
+        !names_transform(*arguments)) {
+      throw CLI::ValidationError("--count-folded", count_folded_refusal);
     }
     run = [arguments, command] {
       return arguments->batch.empty() ? run_warp(*arguments) : run_batch(*arguments, *command);

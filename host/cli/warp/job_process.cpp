@@ -14,6 +14,7 @@
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "host/cli/common/declare.hpp"
 
@@ -31,14 +32,27 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 /// A pipe whose first end is read without waiting.
-std::array<int, 2> pipe_to_read() {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error(fmt::format("no pipe to a process: {}", std::strerror(errno)));
+class Pipe {
+ public:
+  Pipe() {
+    if (pipe2(ends_.data(), O_CLOEXEC) != 0) {
+      throw std::runtime_error(fmt::format("no pipe to a process: {}", std::strerror(errno)));
+    }
+    fcntl(ends_[0], F_SETFL, O_NONBLOCK);
   }
-  fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  return ends;
-}
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() {
+    if (ends_[0] >= 0) close(ends_[0]);
+    close(ends_[1]);
+  }
+
+  int write_end() const { return ends_[1]; }
+  int take_read_end() { return std::exchange(ends_[0], -1); }  ///< to be closed by the caller
+
+ private:
+  std::array<int, 2> ends_{};
+};
 }  // namespace
 
 JobProcess::JobProcess(const std::vector<std::string>& words) {
@@ -47,23 +61,20 @@ JobProcess::JobProcess(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (std::string& word : all) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  const std::array<int, 2> output = pipe_to_read(), errors = pipe_to_read();
-  output_.end = output[0];
-  errors_.end = errors[0];
+  Pipe output, errors;
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, output[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, errors[1], STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&files, output.write_end(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, errors.write_end(), STDERR_FILENO);
   const int error =
       posix_spawn(&process_, "/proc/self/exe", &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
-  close(output[1]);
-  close(errors[1]);
-  if (error == 0) return;
-  close(output_.end);
-  close(errors_.end);
-  throw std::runtime_error(fmt::format("a process cannot be started: {}", std::strerror(error)));
+  if (error != 0) {
+    throw std::runtime_error(fmt::format("a process cannot be started: {}", std::strerror(error)));
+  }
+  output_.end = output.take_read_end();
+  errors_.end = errors.take_read_end();
 }
 
 JobProcess::~JobProcess() {

@@ -10,6 +10,9 @@
 
 namespace tetwarp::cli {
 
+/// Why --count-folded stands alone, with a remedy.
+inline constexpr const char* count_folded_refusal = "needs --report, which it adds to; add it";
+
 /// Plans the job, then reads, warps and writes step by step; writes the report last. Nothing is
 /// written before all checks of the plan have passed. Throws std::invalid_argument, IoError,
 /// CudaError, Cancelled.
