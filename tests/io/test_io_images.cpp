@@ -336,6 +336,13 @@ TEST(Images, OfFreeSurferWithoutADirectionAreCoronal) {
   EXPECT_NE(message_of<IoError>([&] { read_volume(folder / "b.mgh"); }).find("truncated"),
             std::string::npos);
 }
+TEST(Series, TheirTimesAreToldInSixDigits) {
+  EXPECT_NE(times_warning("a.vtkhdf", {0.1 + 0.2, 0.1}).find(": 0.3 is followed by 0.1; "),
+            std::string::npos);
+  EXPECT_NE(times_warning("a.nii", {0, 0.1, 0.6000000000000001}).find("the interval 0.3;"),
+            std::string::npos);
+}
+
 /// Whatever the times, a series can be read; a line names it where they come back otherwise.
 TEST(Series, KeepTheirTimesOrSaySo) {
   const ScratchFolder folder;
