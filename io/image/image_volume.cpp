@@ -124,14 +124,13 @@ void swap_bytes(std::byte* samples, std::size_t size, std::size_t count) {
 }
 
 /// The array; of components along LPS with facts that tell them.
-/// @throws IoError  as component_map()
+/// @throws IoError  as image_component_map()
 ArrayHeader array_of(const std::string& path, const ImageHeader& header, Axes axes) {
   ArrayHeader array{image_array, header.type, header.components};
   if (axes == Axes::ras) return array;
   array.nifti = default_nifti_facts(header.components);
   array.nifti->component_axes = axes;
-  static_cast<void>(
-      component_map(path, header.type, header.components, array.nifti->intent_code, axes));
+  static_cast<void>(image_component_map(path, header.type, header.components, axes));
   return array;
 }
 

@@ -24,6 +24,7 @@
 #include "io/image/mgh_header.hpp"
 #include "io/image/nrrd_header.hpp"
 #include "io/nifti/nifti_components.hpp"
+#include "io/nifti/nifti_header.hpp"
 #include "io/nifti/nifti_runs.hpp"
 
 namespace tetwarp {
@@ -71,9 +72,13 @@ ImageHeader header_of(const std::string& path,
                       const ArrayHeader& array,
                       int level) {
   ImageHeader header;
-  // ITK and 3D Slicer take the positions of these formats as millimeters.
-  const bool is_of_itk = format_of(path) != ImageFormat::mgh && array.nifti;
-  header.grid = is_of_itk ? scaled(grid, itk_factor(*array.nifti)) : grid;
+  // All take positions as millimeters; ITK and 3D Slicer turn those of headers without a form.
+  header.grid = grid;
+  if (array.nifti) {
+    const double unit = nifti_length_unit(array.nifti->xyzt_units);
+    const bool is_of_itk = format_of(path) != ImageFormat::mgh;
+    header.grid = scaled(grid, is_of_itk ? itk_factor(*array.nifti) : Point3{unit, unit, unit});
+  }
   header.type = array.type;
   header.components = array.components;
   header.is_packed = level > 0;
@@ -91,18 +96,21 @@ int level_of(const std::string& path, const VolumeWriteOptions& options) {
 
 /// Factors of an array's components, as the file holds them: displacement fields along LPS axes in
 /// millimeters, vectors and tensors along their NiftiFacts' axes. Nothing: they stay.
-std::optional<std::array<double, 9>> factors_of(const std::string& path, const ArrayHeader& array) {
+/// @throws IoError  what cannot be turned
+std::optional<std::array<double, 9>> factors_of(const std::string& path,
+                                                const Grid& grid,
+                                                const ArrayHeader& array) {
   const NiftiFacts facts = array.nifti.value_or(default_nifti_facts(array.components));
-  if (array.is_itk_field) {
-    const Point3 factor = ratio(itk_factor(facts), {-1, -1, 1});
-    return std::array<double, 9>{factor[0], factor[1], factor[2]};
-  }
-  if (facts.component_axes == Axes::ras) return std::nullopt;
-  static_cast<void>(component_map(path, array.type, array.components, facts.intent_code,
-                                  Axes::lps));  // refuses what cannot be turned
-  const std::array<bool, 9> turned = turned_components(array.components);
+  if (!array.is_itk_field && facts.component_axes == Axes::ras) return std::nullopt;
+  const bool has_form = facts.sform_code > 0 || facts.qform_code > 0;
+  const ComponentMap map = array.is_itk_field
+                               ? itk_field_map(path, array.type, array.components, grid, has_form,
+                                               nifti_length_unit(facts.xyzt_units))
+                               : image_component_map(path, array.type, array.components, Axes::lps);
   std::array<double, 9> factors{};
-  for (std::size_t c = 0; c < factors.size(); ++c) factors[c] = turned[c] ? -1 : 1;
+  for (std::size_t c = 0; c < factors.size(); ++c) {
+    factors[c] = map.is_negated[c] ? -map.scale : map.scale;
+  }
   return factors;
 }
 
@@ -115,7 +123,7 @@ class ImageSink : public VolumeSink {
             bool is_temporal)
       : path_(path),
         format_(*format_of(path)),
-        factors_(factors_of(path, array)),
+        factors_(factors_of(path, grid, array)),
         is_temporal_(is_temporal),
         level_(level_of(path, options)),
         header_(header_of(path, grid, array, level_)) {
@@ -308,7 +316,7 @@ void check_image(const std::string& path,
                  const std::vector<ArrayHeader>& arrays,
                  const VolumeWriteOptions& options) {
   const ArrayHeader& array = only_array(path, "an image of this format", grid, arrays);
-  static_cast<void>(factors_of(path, array));
+  static_cast<void>(factors_of(path, grid, array));
   static_cast<void>(header_of(path, grid, array, level_of(path, options)));
 }
 

@@ -1,7 +1,7 @@
 /// @file meta_header.cpp
 /// Lines "Key = Value" of MetaImage headers, in ITK's axes: LPS.
-#include "io/files/mean_interval.hpp"
 #include "io/image/meta_header.hpp"
+#include "io/files/mean_interval.hpp"
 
 #include <algorithm>
 #include <charconv>

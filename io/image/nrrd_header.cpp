@@ -1,7 +1,7 @@
 /// @file nrrd_header.cpp
 /// Fields of NRRD headers; https://teem.sourceforge.net/nrrd/format.html
-#include "io/files/mean_interval.hpp"
 #include "io/image/nrrd_header.hpp"
+#include "io/files/mean_interval.hpp"
 
 #include <algorithm>
 #include <charconv>

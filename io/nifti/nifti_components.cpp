@@ -53,6 +53,19 @@ ComponentMap component_map(
   return map;
 }
 
+ComponentMap image_component_map(const std::string& path,
+                                 PixelType type,
+                                 int components,
+                                 Axes axes) {
+  if (axes == Axes::lps && components == 6) {
+    throw IoError(path, "",
+                  "holds 6 components, whose order this format does not say; --axes lps turns "
+                  "vectors (3) and tensors (9) of float32 or float64 here; leave it out, or use "
+                  "NIfTI of intent code 1005");
+  }
+  return component_map(path, type, components, 0, axes);
+}
+
 void negate_samples(PixelType type, std::span<std::byte> samples) {
   const auto negated = []<class T>(T sample) { return T{0} - sample; };
   type == PixelType::float32 ? change_each<float>(samples, negated)

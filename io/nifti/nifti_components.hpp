@@ -29,6 +29,15 @@ std::array<bool, 9> turned_components(int components);
 ComponentMap component_map(
     const std::string& path, PixelType type, int components, int intent_code, Axes axes);
 
+/// The map of an NRRD file or a MetaImage, whose components keep their order; `path` is for
+/// messages. Symmetric tensors are refused along LPS: these files do not say in which order of
+/// ITK's, Teem's or VTK's the six components are.
+/// @throws IoError  as component_map()
+ComponentMap image_component_map(const std::string& path,
+                                 PixelType type,
+                                 int components,
+                                 Axes axes);
+
 /// The map of a displacement field that ITK reads; see ArrayHeader::is_itk_field. `path` is for
 /// messages.
 /// @param has_form   the header has a sform or a qform

@@ -150,20 +150,21 @@ TransformParts open_nifti_field(const std::string& path,
   const NiftiFacts facts = read_nifti_facts(path);
   const FieldConvention convention = convention_of(path, facts, options.axes);
   const auto numbers = std::make_shared<const FieldNumbers>(path, "", options);
+  const Point3 place = ratio(itk_factor(facts), world);
   if (convention.is_of_itk) {
     // ITK turns the positions of headers with a form alone, and components never.
     const bool has_form = facts.sform_code > 0 || facts.qform_code > 0;
-    return parts_of(numbers, ratio(itk_factor(facts), world), from_lps(world),
+    return parts_of(numbers, place, from_lps(world),
                     std::string("displacements along ") + (has_form ? "LPS" : "the header's") +
                         " axes in mm (" + convention.said_by + ")");
   }
   std::function<void(const Region&, float*)> change;
   if (convention.holds_positions) {
-    change = [grid = numbers->grid()](const Region& region, float* displacement) {
+    change = [grid = scaled(numbers->grid(), place)](const Region& region, float* displacement) {
       subtract_places(grid, region, displacement);
     };
   }
-  return parts_of(numbers, {1, 1, 1}, {1, 1, 1},
+  return parts_of(numbers, place, place,
                   std::string(convention.holds_positions ? "positions" : "displacements") +
                       " along RAS axes in the header's unit (" + convention.said_by + ")",
                   change);
@@ -180,10 +181,13 @@ TransformParts open_image_field(const std::string& path,
                       (options.axes ? " axes (--axes)" : " axes, as ITK and 3D Slicer write them"));
 }
 
-TransformParts open_volume_field(const std::string& path, const TransformReadOptions& options) {
+TransformParts open_volume_field(const std::string& path,
+                                 const TransformReadOptions& options,
+                                 const Point3& world) {
+  const std::optional<Point3> factor = itk_factor(path, read_volume_header(path));
+  const Point3 place = factor ? ratio(*factor, world) : Point3{1, 1, 1};
   return parts_of(std::make_shared<const FieldNumbers>(path, "tetwarp_displacement", options),
-                  {1, 1, 1}, {1, 1, 1},
-                  "displacements along the file's axes (array tetwarp_displacement)");
+                  place, place, "displacements along the file's axes (array tetwarp_displacement)");
 }
 
 void fail_not_finite(const std::string& path, const std::array<std::int64_t, 3>& voxel) {

@@ -17,7 +17,9 @@ TransformParts open_nifti_field(const std::string& path,
 TransformParts open_image_field(const std::string& path,
                                 const TransformReadOptions& options,
                                 const Point3& world);
-TransformParts open_volume_field(const std::string& path, const TransformReadOptions& options);
+TransformParts open_volume_field(const std::string& path,
+                                 const TransformReadOptions& options,
+                                 const Point3& world);
 
 /// @throws IoError  about a voxel whose displacement is not finite
 [[noreturn]] void fail_not_finite(const std::string& path,

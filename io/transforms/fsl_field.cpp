@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <tetwarp/io.hpp>
+#include <tetwarp/itk_space.hpp>
 #include <utility>
 #include <vector>
 
@@ -190,7 +191,9 @@ bool is_fsl_field(const NiftiHeader& header, const TransformReadOptions& options
          (!options.axes && intent >= first_intent && intent <= last_intent);
 }
 
-TransformParts open_fsl_field(const std::string& path, const TransformReadOptions& options) {
+TransformParts open_fsl_field(const std::string& path,
+                              const TransformReadOptions& options,
+                              const Point3& world) {
   const NiftiHeader header = read_nifti_header(path);
   const int intent = header.facts.intent_code;
   if (!options.fsl && intent != displacement_intent) {
@@ -212,19 +215,21 @@ TransformParts open_fsl_field(const std::string& path, const TransformReadOption
   const FslSpace from = space_of(path), to = space_of(options.image);
   const auto numbers = std::make_shared<FslNumbers>(path, header, options.scratch);
   const FslWarp kind = options.fsl ? *options.fsl : kind_of_numbers(path, from, *numbers);
-  const auto read = [numbers, from, to, kind](const Region& region, float* displacement) {
+  const Grid field_grid = scaled(from.grid, ratio(itk_factor(header.facts), world));
+  const auto read = [numbers, from, to, kind, field_grid](const Region& region,
+                                                          float* displacement) {
     const std::vector<double> some = numbers->read(region);
     for_voxels(region, [&](const Point3& voxel, std::size_t v) {
       Point3 x{some[3 * v], some[3 * v + 1], some[3 * v + 2]};
       if (kind == FslWarp::relative) x = plus(x, from.of_voxel(voxel));
       const Point3 there = to.grid.world_of(to.voxel_of(x));
-      const Point3 here = from.grid.world_of(voxel);
+      const Point3 here = field_grid.world_of(voxel);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         displacement[3 * v + axis] = static_cast<float>(there[axis] - here[axis]);
       }
     });
   };
-  TransformFile file{DisplacementField{from.grid, {}},
+  TransformFile file{DisplacementField{field_grid, {}},
                      std::string(kind == FslWarp::relative ? "displacements" : "positions") +
                          " in scaled voxels of FSL (" + (options.fsl ? "--fsl" : "intent 2006") +
                          ")"};

@@ -19,7 +19,10 @@ bool is_fsl_field(const NiftiHeader& header, const TransformReadOptions& options
 /// (relative).
 ///
 /// Where it is not said what the numbers are, all of them are read once.
+/// @param world     itk_factor() of the image to warp
 /// @throws IoError  as open_transform(); when the numbers fit neither kind clearly
-TransformParts open_fsl_field(const std::string& path, const TransformReadOptions& options);
+TransformParts open_fsl_field(const std::string& path,
+                              const TransformReadOptions& options,
+                              const Point3& world);
 
 }  // namespace tetwarp

@@ -65,14 +65,14 @@ TransformParts opened(const std::string& path, const TransformReadOptions& optio
     switch (kind_of(path)) {
       case FileKind::nifti:
         return is_fsl_field(read_nifti_header(path), options)
-                   ? open_fsl_field(path, options)
+                   ? open_fsl_field(path, options, world_of(options))
                    : open_nifti_field(path, options, world_of(options));
       case FileKind::image:
         return open_image_field(path, options, world_of(options));
       case FileKind::hdf5:
         break;
       default:
-        return open_volume_field(path, options);
+        return open_volume_field(path, options, world_of(options));
     }
   }
   TransformParts parts = transform_of(path,

@@ -90,7 +90,8 @@ std::int64_t rest_file_step(const std::string& path,
                   "has points that move in " + std::to_string(count) +
                       " steps; choose those of the rest by --rest-step N");
   }
-  if (step && *step >= std::max<std::int64_t>(1, static_cast<std::int64_t>(count))) {
+  const std::int64_t steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(count));
+  if (step && (*step < 0 || *step >= steps)) {
     throw IoError(path, "", "has no step " + std::to_string(*step) + " of points");
   }
   return step.value_or(0);
@@ -170,7 +171,7 @@ void MeshReader::State::take_cells(MeshCells cells, Mesh& into, std::vector<MidN
 void MeshReader::State::import(const MeshReadOptions& options) {
   ImportedMesh whole = import_mesh(path, options.import);
   const std::int64_t rest = options.rest_file ? 0 : options.rest_step.value_or(0);
-  if (rest != 0 && (!whole.moves_points || rest >= std::ssize(whole.times))) {
+  if (rest != 0 && (!whole.moves_points || rest < 0 || rest >= std::ssize(whole.times))) {
     throw IoError(path, "",
                   "has no step " + std::to_string(rest) + " of points" +
                       (whole.moves_points ? "" : ": its points do not move, --rest-step is 0"));

@@ -1,5 +1,6 @@
 /// @file times_warning.cpp
 /// times_warning(): times that a format does not keep.
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -8,10 +9,16 @@
 
 #include "io/files/extension.hpp"
 #include "io/files/mean_interval.hpp"
-#include "io/image/image_header.hpp"
 
 namespace tetwarp {
 namespace {
+/// A time with six digits.
+std::string time_text(double time) {
+  char digits[32];
+  return {digits,
+          std::to_chars(digits, digits + sizeof digits, time, std::chars_format::general, 6).ptr};
+}
+
 /// Of a format that numbers the steps.
 std::string lost_times(const std::string& output, const std::vector<double>& times) {
   for (std::size_t step = 0; step < times.size(); ++step) {
@@ -30,7 +37,7 @@ std::string uneven_times(const std::string& output, const std::vector<double>& t
     const double expected = times.front() + interval * static_cast<double>(step);
     if (std::abs(times[step] - expected) <= 1e-3 * std::abs(interval)) continue;
     return output + ": the times of the steps are not equally spaced or do not increase, images " +
-           "keep the first one and the interval " + shortest_text(interval) +
+           "keep the first one and the interval " + time_text(interval) +
            "; write VTKHDF to keep the times";
   }
   return {};
@@ -39,10 +46,10 @@ std::string uneven_times(const std::string& output, const std::vector<double>& t
 std::string unordered_times(const std::string& output, const std::vector<double>& times) {
   for (std::size_t step = 1; step < times.size(); ++step) {
     if (times[step] > times[step - 1]) continue;
-    return output + ": the times of the steps do not increase: " + shortest_text(times[step - 1]) +
-           " is followed by " + shortest_text(times[step]) +
+    return output + ": the times of the steps do not increase: " + time_text(times[step - 1]) +
+           " is followed by " + time_text(times[step]) +
            "; programs that show the file leave out steps or order them by time; correct the "
-           "times of the mesh";
+           "times of the steps";
   }
   return {};
 }

@@ -3,15 +3,16 @@
 Usage: check_itk_spaces.py COMMAND
 
 Images in no unit, meters, millimeters and micrometers, with a sform, a qform or neither, are warped
-by transforms and fields that ITK wrote, also onto the grid of an image of another unit and form, and
-fields that the command wrote for them are applied by SimpleITK. Exits 77 when NumPy or SimpleITK is
-missing, 1 when a value differs.
+by transforms and fields that ITK wrote, also onto the grid of an image of another unit and form,
+there by fields along RAS axes, of NiftyReg and of FSL, too, and fields that the command wrote for
+them are applied by SimpleITK. Exits 77 when NumPy or SimpleITK is missing, 1 when a value differs.
 """
 import struct
 import sys
 import tempfile
 
-from check_transforms import DIMS, Command, arguments, np, sitk, worst_of, write_nifti, expect
+from check_transforms import (DIMS, DISPVECT, VECTOR, Command, arguments, np, sitk, worst_of,
+                              write_nifti, expect)
 
 if sitk is None:
     sys.exit(77)
@@ -19,13 +20,18 @@ UNITS = {"none": (0, 1.0), "m": (1, 1e3), "mm": (2, 1.0), "um": (3, 1e-3)}  # co
 FORMS = "sform", "qform", "none"
 
 
-def write_image(path, samples, unit, form, spacing=(1.5, 2.0, 2.5)):
+def affine_of(form, spacing=(1.5, 2.0, 2.5)):
     """Oblique with a sform, with an origin also with a qform."""
     turn, _ = np.linalg.qr(np.array([[1.0, 0.3, -0.2], [-0.25, 1.0, 0.1], [0.15, -0.2, 1.0]]))
     affine = np.eye(4)
     affine[:3, :3] = (turn if form == "sform" else np.eye(3)) @ np.diag(spacing)
     affine[:3, 3] = (0, 0, 0) if form == "none" else (12, -34, 56)
-    write_nifti(path, samples, affine, unit=UNITS[unit][0], form=int(form == "sform"))
+    return affine
+
+
+def write_image(path, samples, unit, form, spacing=(1.5, 2.0, 2.5), **words):
+    write_nifti(path, samples, affine_of(form, spacing), unit=UNITS[unit][0],
+                form=int(form == "sform"), **words)
     if form == "qform":
         with open(path, "r+b") as file:
             file.seek(252)
@@ -94,6 +100,39 @@ def check_written(run, name, rigid):
                2e-4)
 
 
+def fields_across(transform, moving, fixed, from_header, to_header, spacing):
+    """A transform from an image to another one in the conventions along RAS axes and of FSL: the
+    numbers in the other image's header, fields of this header, and words of the command."""
+    def to_ras(unit, form):  # from LPS and mm along the axes and to the unit of a header
+        return (np.array([1, 1, 1]) if form == "none" else np.array([-1, -1, 1])) / UNITS[unit][1]
+
+    index = np.stack(np.meshgrid(*[np.arange(n) for n in DIMS], indexing="ij"), axis=-1)
+    here = np.array([fixed.TransformIndexToPhysicalPoint(i.tolist())
+                     for i in index.reshape(-1, 3)])
+    there = np.array([transform.TransformPoint(p.tolist()) for p in here])
+    voxels = np.array([moving.TransformPhysicalPointToContinuousIndex(p.tolist()) for p in there])
+    shape = (*DIMS, 3)
+    vectors = ((there - here) * to_ras(*to_header)).reshape(shape)
+    places = (there * to_ras(*to_header)).reshape(shape)
+    absolute = fsl_points(voxels.reshape(shape), from_header[1], (1.5, 2.0, 2.5))
+    relative = absolute - fsl_points(index, to_header[1], spacing)
+    nifty = {"intent": VECTOR, "name": "NREG_TRANS"}
+    return {"dispvect": (vectors, {"intent": DISPVECT}, []),
+            "ras": (vectors, {}, ["--axes", "ras"]),
+            "nifty_vectors": (vectors, {**nifty, "parameter": 1.0}, []),
+            "nifty_places": (places, nifty, []),
+            "fsl_absolute": (absolute, {"intent": 2006, "steps": True}, ["--fsl", "absolute"]),
+            "fsl_relative": (relative, {"intent": 2006, "steps": True}, ["--fsl", "relative"])}
+
+
+def fsl_points(index, form, spacing):
+    """Scaled indices, the first one from the other end in a right-handed header with a form."""
+    x = np.array(index, float)
+    if form != "none" and np.linalg.det(affine_of(form, spacing)[:3, :3]) > 0:
+        x[..., 0] = DIMS[0] - 1 - x[..., 0]
+    return x * spacing
+
+
 def check_like(run, samples, unit, form):
     """Onto a grid of another unit and form, which overlaps in ITK's space."""
     other = {"none": "um", "m": "mm", "mm": "m", "um": "none"}[unit]
@@ -110,9 +149,21 @@ def check_like(run, samples, unit, form):
     rigid.SetCenter(start.tolist())
     rigid.SetTranslation((end - start).tolist())
     sitk.WriteTransform(rigid, run.path("across.tfm"))
-    found = warped(run, "image.nii", "across.tfm", "--like", "like.nii")
-    expect(f"{unit} {form} onto {other} {other_form}", found[INNER],
-           resampled(moving, fixed, rigid)[INNER], 2e-4)
+    run("compose", "across.tfm", "-o", "across.vtkhdf", "--like", "like.nii")
+    run("compose", "across.tfm", "-o", "across.nii", "--like", "like.nii")
+    # The largest numbers of float32 in voxels, which are at least 1.5 wide.
+    reach = np.max(np.abs(start) + np.abs(end)) / UNITS[unit][1] / 1.5
+    files = {"across.tfm": ([], 0), "across.vtkhdf": ([], reach), "across.nii": ([], reach)}
+    for kind, (numbers, header, words) in fields_across(rigid, moving, fixed, (unit, form),
+                                                        (other, other_form), spacing).items():
+        of_fsl = np.abs(numbers).max() / 1.5 if kind.startswith("fsl") else 0
+        files[f"{kind}.nii"] = words, max(reach, of_fsl)
+        write_image(run.path(f"{kind}.nii"), numbers, other, other_form, spacing, **header)
+    expected = resampled(moving, fixed, rigid)[INNER]
+    for file, (words, reach) in files.items():
+        found = warped(run, "image.nii", file, "--like", "like.nii", *words)
+        expect(f"{unit} {form} onto {other} {other_form} by {file}", found[INNER], expected,
+               2e-4 + 3 * 100 * reach * 2.0**-24)  # samples differ by 100 per voxel and axis
     place = sitk.ReadImage(run.path("out.mha"))
     corner = [n - 1 for n in DIMS]
     expect("place of the output", np.array(place.TransformIndexToPhysicalPoint(corner)) /

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -97,6 +99,88 @@ TEST(Axes, LpsIsRefusedForComponentsOfNoDirection) {
     const std::string error = io_error([&] { read_nifti(folder / "a.nii", Axes::lps); });
     EXPECT_NE(error.find("leave it out"), std::string::npos) << error;
     EXPECT_NE(error.find(std::to_string(components) + " component"), std::string::npos) << error;
+  }
+}
+
+/// NRRD and MetaImage do not say in which order six components are.
+TEST(Axes, LpsIsRefusedForSymmetricTensorsOfUnknownOrder) {
+  for (const std::string name : {"a.nrrd", "a.mha", "a.mhd"}) {
+    const ScratchFolder folder;
+    const Volume tensor = counting_volume(PixelType::float32, 6);
+    ArrayHeader array{"t", tensor.type, 6, default_nifti_facts(6)};
+    const auto write = [&] {
+      BlockVolumeWriter writer(folder / name, tensor.grid, {array}, {}, false);
+      writer.write(0, {{0, 0, 0}, tensor.grid.dims}, tensor.data.data());
+      writer.finish();
+    };
+    array.nifti->component_axes = Axes::lps;
+    EXPECT_NE(io_error(write).find("whose order this format does not say"), std::string::npos);
+    EXPECT_EQ(folder.entry_count(), 0) << name;
+
+    array.nifti->component_axes = Axes::ras;
+    write();
+
+    EXPECT_EQ(read_volume(folder / name).data, tensor.data) << name;
+    const auto turned = [&] { read_volume(folder / name, {}, 0, {.axes = Axes::lps}); };
+    EXPECT_NE(io_error(turned).find("whose order this format does not say"), std::string::npos);
+  }
+}
+
+/// A displacement field for ITK has three floating-point numbers, in every format.
+TEST(Axes, FieldsForItkOfOtherNumbersAreRefused) {
+  const Grid grid{.dims = {3, 2, 2}};
+  for (const std::string name : {"a.nii", "a.nrrd", "a.mha", "a.mhd"}) {
+    for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::int32,
+                                 PixelType::float32, PixelType::float64}) {
+      for (const int components : {1, 2, 3, 6, 9}) {
+        const ScratchFolder folder;
+        const Volume field = make_volume(grid, type, components, "tetwarp_displacement");
+        ArrayHeader array{field.name, type, components, default_nifti_facts(components)};
+        array.is_itk_field = true;
+        const std::string error = message_of<IoError>([&] {
+          BlockVolumeWriter writer(folder / name, grid, {array}, {}, false);
+          writer.write(0, {{0, 0, 0}, grid.dims}, field.data.data());
+          writer.finish();
+        });
+        const bool is_field = components == 3 && !is_integer(type);
+        EXPECT_EQ(error.find("has three of float32 or float64") == std::string::npos, is_field)
+            << name << name_of(type) << components << error;
+        EXPECT_EQ(folder.entry_count() > 0, is_field) << name << name_of(type) << components;
+      }
+    }
+  }
+}
+
+/// Images other than NIfTI are in millimeters, whatever the unit of the header that they come from.
+TEST(Axes, PlacesInOtherImagesAreInMillimeters) {
+  for (const std::string name : {"a.nrrd", "a.mha", "a.mhd", "a.mgh", "a.mgz"}) {
+    for (const auto& [unit, millimeters] : {std::pair{NIFTI_UNITS_UNKNOWN, 1.0},
+                                            {NIFTI_UNITS_METER, 1e3},
+                                            {NIFTI_UNITS_MM, 1.0},
+                                            {NIFTI_UNITS_MICRON, 1e-3}}) {
+      for (const int form : {0, 1}) {
+        const ScratchFolder folder;
+        const Volume volume = counting_volume(PixelType::uint8, 1);
+        ArrayHeader array{"a", volume.type, 1, default_nifti_facts(1)};
+        array.nifti->xyzt_units = unit;
+        array.nifti->sform_code = array.nifti->qform_code = form;
+        BlockVolumeWriter writer(folder / name, volume.grid, {array}, {}, false);
+        writer.write(0, {{0, 0, 0}, volume.grid.dims}, volume.data.data());
+        writer.finish();
+
+        const Grid grid = read_volume_header(folder / name).grid;
+
+        // ITK takes a header without a form as LPS; FreeSurfer's images are RAS.
+        const double sign = form == 0 && !name.starts_with("a.mg") ? -1 : 1;
+        for (const Point3& index : {Point3{0, 0, 0}, {6, 4, 3}}) {
+          const Point3 found = grid.world_of(index), place = volume.grid.world_of(index);
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double expected = (axis < 2 ? sign : 1) * millimeters * place[axis];
+            EXPECT_NEAR(found[axis], expected, 1e-6 * std::abs(expected) + 1e-9) << name << unit;
+          }
+        }
+      }
+    }
   }
 }
 

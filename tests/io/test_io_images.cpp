@@ -282,11 +282,11 @@ TEST(Images, OfNrrdLieInTheExtentsOfTheirAxes) {
   }
 }
 
-/// Vectors and symmetric tensors along LPS come back as they were written, turned in between.
+/// Vectors and tensors along LPS come back as they were written, turned in between.
 TEST(Images, TurnComponentsAlongLps) {
   const ScratchFolder folder;
-  const std::vector<std::pair<int, std::vector<int>>> signs{
-      {3, {-1, -1, 1}}, {6, {1, 1, 1, 1, -1, -1}}, {9, {1, 1, -1, 1, 1, -1, -1, -1, 1}}};
+  const std::vector<std::pair<int, std::vector<int>>> signs{{3, {-1, -1, 1}},
+                                                            {9, {1, 1, -1, 1, 1, -1, -1, -1, 1}}};
   for (const std::string name : {"a.nrrd", "a.mha", "a.mhd"}) {
     for (const auto& [components, sign] : signs) {
       Volume volume = make_volume(Grid{.dims = {2, 2, 1}}, PixelType::float32, components, "v");
@@ -336,6 +336,13 @@ TEST(Images, OfFreeSurferWithoutADirectionAreCoronal) {
   EXPECT_NE(message_of<IoError>([&] { read_volume(folder / "b.mgh"); }).find("truncated"),
             std::string::npos);
 }
+TEST(Series, TheirTimesAreToldInSixDigits) {
+  EXPECT_NE(times_warning("a.vtkhdf", {0.1 + 0.2, 0.1}).find(": 0.3 is followed by 0.1; "),
+            std::string::npos);
+  EXPECT_NE(times_warning("a.nii", {0, 0.1, 0.6000000000000001}).find("the interval 0.3;"),
+            std::string::npos);
+}
+
 /// Whatever the times, a series can be read; a line names it where they come back otherwise.
 TEST(Series, KeepTheirTimesOrSaySo) {
   const ScratchFolder folder;

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
+#include <string>
 
 #include "tests/support/io_files.hpp"
 
@@ -194,6 +196,25 @@ TEST(VtkhdfMesh, TakesRestFromAnotherFile) {
 
   EXPECT_EQ(reader.mesh().rest_positions, two_tets().rest_positions);
   EXPECT_EQ(reader.read_step(0)[0], (Point3{2, 0, 0}));
+}
+
+TEST(VtkhdfMesh, RefusesRestStepsThatARestFileDoesNotHave) {
+  const ScratchFolder folder;
+  write_mesh(folder / "still.vtkhdf", two_tets());
+  write_moving(folder / "m.vtkhdf", {0, 1, 3});
+
+  for (const std::int64_t step : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1},
+                                  std::int64_t{3}, std::numeric_limits<std::int64_t>::max()}) {
+    const auto error = [&](const MeshReadOptions& options) {
+      return io_error([&] { MeshReader(folder / "m.vtkhdf", options); });
+    };
+    const std::string no_step = "has no step " + std::to_string(step);
+    EXPECT_NE(error({.rest_step = step}).find(no_step), std::string::npos);
+    EXPECT_NE(error({.rest_step = step, .rest_file = folder / "m.vtkhdf"}).find(no_step),
+              std::string::npos);
+    EXPECT_NE(error({.rest_step = step, .rest_file = folder / "still.vtkhdf"}).find("do not move"),
+              std::string::npos);
+  }
 }
 
 TEST(VtkhdfMesh, ConcatenatesParts) {

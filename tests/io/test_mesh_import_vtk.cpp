@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,6 +95,14 @@ TEST_F(MeshImport, ReadsSeriesOfFilesAndMovingPoints) {
   EXPECT_EQ(reader.mesh().rest_positions[4], (Point3{2, 1, 1}));
   EXPECT_EQ(reader.read_step(2)[4], (Point3{3, 1, 1}));
   EXPECT_EQ(MeshReader(folder_ / "s_*.vtk").read_step(2)[4], (Point3{3, 1, 1}));
+  for (const std::int64_t step : {-1, 3}) {
+    for (const std::optional<std::string>& rest :
+         {std::optional<std::string>(), std::optional<std::string>(folder_ / "s_*.vtk")}) {
+      const std::string refusal =
+          io_error([&] { MeshReader(folder_ / "a.pvd", {.rest_step = step, .rest_file = rest}); });
+      EXPECT_NE(refusal.find("has no step " + std::to_string(step)), std::string::npos) << refusal;
+    }
+  }
 }
 
 TEST_F(MeshImport, RefusesDamagedSeriesInOneLine) {

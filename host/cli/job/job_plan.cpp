@@ -45,7 +45,7 @@ void check_kinds(const WarpArguments& arguments) {
 /// True when --axes lps turns the components of an array, as it does those of meshes.
 bool is_turned(const ArrayHeader& array) {
   const bool is_tensor =
-      array.components == 6 && (!array.nifti || array.nifti->intent_code == symmetric_intent);
+      array.components == 6 && array.nifti && array.nifti->intent_code == symmetric_intent;
   return !is_integer(array.type) && (array.components == 3 || array.components == 9 || is_tensor);
 }
 
