@@ -120,8 +120,10 @@ TEST_F(BadFiles, AreRefusedBeforeAbsurdSizesAreAllocated) {
 TEST_F(BadFiles, AreNamedWhenAnArrayDoesNotExistOrHoldsNoNumbers) {
   expect_line(io_error([&] { read_volume(volume, "x"); }), volume, "holds values");
   expect_line(io_error([&] { read_volume(volume, "a/b"); }), volume, "missing dataset");
+  const hid_t text = H5Tcopy(H5T_C_S1);
   Hdf5Editor(volume).dataset("VTKHDF/PointData/values", {4, 5, 7}, std::vector<std::uint8_t>{},
-                             H5Tcopy(H5T_C_S1));
+                             text);
+  H5Tclose(text);
   expect_volume_error("holds no array of numbers");
   expect_line(io_error([&] { read_volume(volume, "values"); }), volume, "that are not numbers");
 }
