@@ -167,10 +167,10 @@ struct ContactTrackerOptions {
 /// A reported contact continues the record with its key, else the nearest record of the same two
 /// bodies within `match_distance`, else it is new. Contacts with adhesion are kept when collision
 /// detection no longer reports them, because a bond that is pulled has a gap. A contact that
-/// touches for the first time (gap within `touch_distance`, or a normal impulse > 0) gets
-/// `initial_intensity` of its material. The anchors of a contact without adhesion follow the
-/// reported points, so that bonds form without tension; its record is deleted when it is no longer
-/// reported.
+/// touches for the first time (gap within `touch_distance`, or a normal impulse > 0, its own or one
+/// that presses on its area) gets `initial_intensity` of its material. The anchors of a contact
+/// without adhesion follow the reported points, so that bonds form without tension; its record is
+/// deleted when it is no longer reported.
 ///
 /// A contact with restitution e that would close within the step, gap <= dt approach_speed, is an
 /// impact: it separates with e approach_speed or more. Otherwise it closes at most its gap.
