@@ -71,7 +71,7 @@ NB_MODULE(_core, module) {
         "tetwarp: sub-interpreters are not supported; import it in the main interpreter or in "
         "another process");
   }
-  nb::set_leak_warnings(false);  // daemon threads leave objects when the program ends
+  nb::set_leak_warnings(false);  // objects that daemon threads hold at exit are no leaks
   module.doc() = "The library behind the package tetwarp.";
   module.attr("version") = TETWARP_VERSION;
   const nb::exception<CudaError> cuda_error(module, "CudaError", PyExc_RuntimeError);

@@ -1,5 +1,5 @@
 /// @file sample_level.hpp
-/// A sample minus a threshold, whose sign decides what is foreground.
+/// A sample minus a threshold. Samples above the threshold are foreground.
 #pragma once
 #include <limits>
 #include <type_traits>

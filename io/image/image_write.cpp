@@ -95,7 +95,8 @@ int level_of(const std::string& path, const VolumeWriteOptions& options) {
 }
 
 /// Factors of an array's components, as the file holds them: displacement fields along LPS axes in
-/// millimeters, vectors and tensors along their NiftiFacts' axes. Nothing: they stay.
+/// millimeters, vectors and tensors along their NiftiFacts' axes. Nothing: the file holds the
+/// numbers of the array.
 /// @throws IoError  what cannot be turned
 std::optional<std::array<double, 9>> factors_of(const std::string& path,
                                                 const Grid& grid,

@@ -18,7 +18,7 @@ std::string nrrd_field(const std::string& written);
 /// The type of samples; nothing: it is not read.
 std::optional<PixelType> nrrd_type(const std::string& name);
 
-/// A name that nrrd_type() knows.
+/// The name of a type in NRRD headers that are written.
 const char* nrrd_type_name(PixelType type);
 
 /// Which axes of a space point against RAS; nothing: it is not read.

@@ -105,7 +105,7 @@ TEST_F(CliRefusals, OfOneOfSeveralVolumesStopThemAll) {
       << field.err;
 }
 
-/// A mesh whose deformation is not found is told by every command that uses it, in the same words.
+/// Every command that uses a mesh whose deformation is not found prints the same warning.
 TEST_F(CliRefusals, OfNoCommandHideAMeshThatIsNotDeformed) {
   write_text(scene / "points.csv", "x,y,z\n10,2,105\n");
   const std::string told = run({"warp", "volume.vtkhdf", "rest.vtkhdf", "-o", "w.vtkhdf"}).err;
@@ -250,7 +250,7 @@ TEST_F(CliRefusals, OfOptionsWithoutAnEffectNameThem) {
   }
 }
 
-/// A step that does not exist is told with the file that lacks it.
+/// The error of a step that does not exist names the file.
 TEST_F(CliRefusals, OfStepsNameTheFile) {
   for (const Names& words :
        {Names{"warp", "image.nii", "mesh.vtkhdf", "-o", "out.nii"},

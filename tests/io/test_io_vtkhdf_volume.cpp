@@ -279,7 +279,7 @@ TEST(VtkhdfVolume, IsDistinguishedFromAMeshByContent) {
   EXPECT_EQ(kind_of(folder / "v"), FileKind::volume);
   EXPECT_EQ(kind_of(folder / "m"), FileKind::mesh);
   EXPECT_EQ(kind_of(folder / "t"), FileKind::unknown);
-  // Exodus in netCDF-4 is HDF5, too: its name tells.
+  // Exodus in netCDF-4 is HDF5, too, and is recognized by its name.
   for (const std::string name : {"x.exo", "x.e", "x.h5"}) {
     H5Fclose(H5Fcreate((folder / name).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
     EXPECT_EQ(kind_of(folder / name), name == "x.h5" ? FileKind::hdf5 : FileKind::unknown);

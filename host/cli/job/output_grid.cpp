@@ -98,10 +98,6 @@ VolumeHeader base_header(const GridChoice& choice) {
   return read_volume_header(choice.base, read);
 }
 
-bool names_file(const GridChoice& choice) {
-  return choice.base != "same" && choice.base != "bounds";
-}
-
 /// Its grid in the world of the source.
 Grid base_grid(const GridChoice& choice, const std::optional<Point3>& world) {
   const VolumeHeader base = base_header(choice);
@@ -124,7 +120,7 @@ Grid resolve(const GridChoice& choice,
   check_series(choice.series, {choice.base}, "--like-series");
   if (choice.base == "bounds") {
     grid = bounds();
-  } else if (names_file(choice)) {
+  } else if (choice.has_file()) {
     grid = base_grid(choice, world);
   }
   if (choice.dims.has_value() != choice.spacing.has_value()) grid = with_box_kept(choice, grid);
@@ -170,12 +166,12 @@ Grid resolve_grid(const GridChoice& choice,
 }
 
 std::optional<Point3> base_factor(const GridChoice& choice) {
-  if (!names_file(choice)) return std::nullopt;
+  if (!choice.has_file()) return std::nullopt;
   return itk_factor(choice.base, base_header(choice));
 }
 
 void take_base_facts(const GridChoice& choice, std::vector<ArrayHeader>& arrays) {
-  if (!names_file(choice)) return;
+  if (!choice.has_file()) return;
   const std::optional<NiftiFacts> base = first_facts(base_header(choice));
   for (ArrayHeader& array : arrays) {
     if (!array.nifti) array.nifti = facts_of_extra(base, array.components);

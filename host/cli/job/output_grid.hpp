@@ -21,6 +21,9 @@ struct GridChoice {
   std::optional<Point3> origin;
   std::optional<Point3> spacing;
   std::optional<std::array<double, 9>> direction;
+
+  /// Whether `base` is a file.
+  bool has_file() const { return base != "same" && base != "bounds"; }
 };
 
 /// The base grid with those parts replaced that are given. Of dims and spacing, one that is given

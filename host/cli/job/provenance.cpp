@@ -99,7 +99,7 @@ InputFacts input_facts(const WarpArguments& arguments) {
   InputFacts facts;
   if (!arguments.provenance || arguments.dry_run) return facts;
   Json inputs = Json::array();
-  // A list of files stands for itself and for those that it names.
+  // Of a file that lists others, it and all of these.
   const auto add = [&](const std::string& role, const std::string& path) {
     for (const std::string& file : files_of(path)) {
       facts.times.emplace_back(file, fs::last_write_time(file));
@@ -110,9 +110,7 @@ InputFacts input_facts(const WarpArguments& arguments) {
   const bool is_transform = is_transform_file(arguments.mesh_file(), arguments.transform_options());
   add(is_transform ? "transform" : "mesh", arguments.mesh_file());
   if (arguments.mesh.rest_file) add("rest", *arguments.mesh.rest_file);
-  if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
-    add("grid", arguments.grid.base);
-  }
+  if (arguments.grid.has_file()) add("grid", arguments.grid.base);
   facts.json = json_text(inputs, 0);
   return facts;
 }

@@ -25,7 +25,7 @@ std::vector<std::string> files_to_write(const WarpArguments& arguments,
 
 /// All files that a job reads, as they are before it runs.
 struct InputFacts {
-  std::string json;  ///< size and SHA-256 of each; empty: the job asks for none
+  std::string json;  ///< size and SHA-256 of each; empty: without --provenance
   std::vector<std::pair<std::string, std::filesystem::file_time_type>> times;  ///< last writes
 };
 

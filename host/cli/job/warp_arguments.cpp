@@ -301,7 +301,7 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
 std::vector<std::string> WarpArguments::inputs() const {
   std::vector<std::string> inputs = files;
   if (mesh.rest_file) inputs.push_back(*mesh.rest_file);
-  if (grid.base != "same" && grid.base != "bounds") inputs.push_back(grid.base);
+  if (grid.has_file()) inputs.push_back(grid.base);
   return inputs;
 }
 

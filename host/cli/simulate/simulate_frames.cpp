@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
+#include <utility>
 
 namespace tetwarp::cli {
 namespace {
@@ -42,6 +44,24 @@ std::int64_t FrameSteps::count_through(std::int64_t step) const {
   while (frame > 0 && step_of(frame) > step) --frame;
   while (frame + 1 < count_ && step_of(frame + 1) <= step) ++frame;
   return frame + 1;
+}
+
+std::vector<std::string> older_frames(const std::vector<std::string>& written, std::int64_t next) {
+  std::set<std::pair<std::string, std::string>> kinds;  // of names: before and behind the number
+  for (const std::string& path : written) {
+    kinds.emplace(path.substr(0, path.rfind('_') + 1), path.substr(path.rfind('.')));
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [head, tail] : kinds) {
+    const auto name = [&](std::int64_t n) { return fmt::format("{}{:04}{}", head, n, tail); };
+    std::int64_t n = next;
+    while (std::filesystem::exists(name(n))) ++n;
+    if (n == next) continue;
+    warnings.push_back(
+        fmt::format("{}: is of an earlier run, as are {} of the names that follow; remove them",
+                    name(next), n - next - 1));
+  }
+  return warnings;
 }
 
 std::vector<std::string> coupling_names(const Scene& scene) {

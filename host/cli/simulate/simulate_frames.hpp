@@ -27,6 +27,12 @@ class FrameSteps {
   std::int64_t count_;
 };
 
+/// Warnings of frames of an earlier, longer run beside those that this run has written, one for
+/// each kind of file.
+/// @param written  files of this run, NAME_NNNN.EXTENSION
+/// @param next     number of the frame after the last one
+std::vector<std::string> older_frames(const std::vector<std::string>& written, std::int64_t next);
+
 /// Names of the couplings in files: their own or "a-b"; further ones of the same name get "_2",
 /// "_3" and so on.
 std::vector<std::string> coupling_names(const Scene& scene);

@@ -11,7 +11,6 @@
 #include <iterator>
 #include <map>
 #include <new>
-#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <tetwarp/error.hpp>
@@ -58,9 +57,7 @@ std::vector<std::string> files_read(const SimulateArguments& arguments) {
   std::vector<std::string> files;
   if (!arguments.scene_file.empty()) files.push_back(arguments.scene_file);
   if (arguments.pictures.casts_by_file()) files.push_back(arguments.pictures.cast);
-  if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
-    files.push_back(arguments.grid.base);
-  }
+  if (arguments.grid.has_file()) files.push_back(arguments.grid.base);
   return files;
 }
 
@@ -144,28 +141,6 @@ void add_adhesion_warnings(const std::string& file, const Scene& scene, Warnings
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     if (obstacle.contact) check(obstacle.contact->adhesion, obstacle.name + ".contact.adhesion");
-  }
-}
-
-/// Pictures and warped volumes of an earlier, longer run beside those that this run has written.
-/// @param written  of this run, NAME_NNNN.EXTENSION
-/// @param next     number of the frame after the last one
-void add_older_frames(const std::vector<std::string>& written,
-                      std::int64_t next,
-                      Warnings& warnings) {
-  std::set<std::pair<std::string, std::string>> kinds;  // of names: before and behind the number
-  for (const std::string& path : written) {
-    kinds.emplace(path.substr(0, path.rfind('_') + 1), path.substr(path.rfind('.')));
-  }
-  for (const auto& [head, tail] : kinds) {
-    const auto name = [&](std::int64_t n) { return fmt::format("{}{:04}{}", head, n, tail); };
-    std::int64_t n = next;
-    while (fs::exists(name(n))) ++n;
-    if (n == next) continue;
-    warnings.push_back(
-        fmt::format("{}: is of an earlier run, as are {} of the names that follow; "
-                    "remove them",
-                    name(next), n - next - 1));
   }
 }
 
@@ -395,7 +370,9 @@ void SimulateRun::finish() {
   }
   result_.warnings = simulator_->scene().notes;
   add_adhesion_warnings(arguments_.scene(), simulator_->scene(), result_.warnings);
-  add_older_frames(numbered, next_frame_, result_.warnings);
+  for (std::string& warning : older_frames(numbered, next_frame_)) {
+    result_.warnings.push_back(std::move(warning));
+  }
   if (result_.late_steps > 0) {
     result_.warnings.push_back(fmt::format(
         "{}: the solves of {} of {} steps ended by --max-step-seconds (series.h5: out_of_time)",

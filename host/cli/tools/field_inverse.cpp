@@ -98,8 +98,8 @@ class ImageCells {
     visit(low, high, image);
   }
 
-  /// Of a node of the cells: half a voxel before the first center, the centers, half a voxel
-  /// behind the last one.
+  /// The index of a node of the cells along an axis: half a voxel before the first center, the
+  /// centers, half a voxel behind the last one [voxel].
   double index_of(std::int64_t node, std::size_t axis) const {
     return std::clamp(static_cast<double>(node), -0.5,
                       static_cast<double>(grid_->dims[axis]) - 0.5);
@@ -256,7 +256,8 @@ class FieldInverse {
     if (searches.size() == most_at_once) run(searches, points);
   }
 
-  /// Newton steps until a search has found its x or no step brings it nearer.
+  /// Makes Newton steps. A search ends when its residual is small enough, or a step does not reduce
+  /// it.
   /// @param searches  empty afterwards
   void run(std::vector<Search>& searches, std::vector<Point3>& points) {
     if (progress_) progress_();
@@ -289,7 +290,7 @@ class FieldInverse {
     });
   }
 
-  /// One step of all searches; those that it brings no nearer end.
+  /// Makes one step of all searches. Those whose residual it does not reduce end.
   void make_step(std::vector<Search>& searches) const {
     const std::vector<Point3> steps = newton_steps(searches);
     std::vector<Search> nearer, left = searches;

@@ -79,7 +79,7 @@ std::string summary_by_kind(const WarpArguments& arguments, const JobResult& res
   return names_transform(arguments) ? transform_summary(arguments, result) : summary(result);
 }
 
-/// What of a batch has ended.
+/// The state of a job: not ended, ended, ended by an error.
 enum class JobState { open, ended, failed };
 
 /// Why a job is not run: an earlier one, which was to write an input of it, has failed. Empty: it
