@@ -20,7 +20,7 @@ SCENES = {  # options, and the pixel where the mouse takes something
     "torso": ([], (400, 330)),
     "shoulder": (["--max-step-seconds", "0.02"], (400, 250)),
     "candy": ([], (400, 420)),
-    "mouth": ([], (400, 330)),
+    "mouth": ([], (400, 260)),
 }
 PROCESSOR = re.compile(r"processor time: (\d+) steps of ([\d.]+) ms, (\d+) warps of ([\d.]+) ms, "
                        r"(\d+) pictures of ([\d.]+) ms")

@@ -100,11 +100,9 @@ void print_timing(const LiveSimulation& simulation,
       static_cast<long long>(simulation.log().ticks), each(spent.steps, simulation.log().ticks),
       static_cast<long long>(spent.warp_count), each(spent.warps, spent.warp_count),
       static_cast<long long>(pictures), each(all - spent.steps - spent.warps, pictures));
-  std::printf(
-      "wall time: %.1f steps/s in %.1f s, %lld over their time; %.1f pictures/s in %.1f s\n",
-      static_cast<double>(simulation.log().ticks) / wall, wall,
-      static_cast<long long>(simulation.late_steps()),
-      static_cast<double>(pictures) / window.seconds(), window.seconds());
+  std::printf("wall time: %.1f steps/s in %.1f s, %lld over their time; %.1f pictures/s\n",
+              static_cast<double>(simulation.log().ticks) / wall, wall,
+              static_cast<long long>(simulation.late_steps()), window.picture_rate());
 }
 
 volatile std::sig_atomic_t signal_number = 0;

@@ -118,8 +118,9 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
   if (!options_.film.empty()) film_.require(options_.film);
   const Stopwatch since_first;
+  const std::int64_t first_count = picture_count_;
   events_->Start();
-  seconds_ = since_first.seconds();
+  picture_rate_ = static_cast<double>(picture_count_ - first_count) / since_first.seconds();
   tell_screens();  // what the last events have changed
   attempt([this] { film_.end(); });
 }

@@ -48,8 +48,8 @@ class ViewWindow {
   /// Writes what is shown. @pre has_picture() @throws IoError
   void save_picture(const std::string& path);
   std::int64_t picture_count() const { return picture_count_; }
-  /// Wall time from the first picture on.
-  double seconds() const { return seconds_; }
+  /// Pictures a second of wall time, from the first one on.
+  double picture_rate() const { return picture_rate_; }
   const InputDelay& delay() const { return delay_; }
   /// What ended the simulation, or empty.
   std::string failure();
@@ -107,7 +107,7 @@ class ViewWindow {
   Stopwatch drawing_;  ///< since a picture was begun
   Stopwatch resting_;  ///< since the last picture of something that moved
   std::int64_t picture_count_ = 0;
-  double seconds_ = 0;
+  double picture_rate_ = 0;
   InputDelay delay_;
   double level_ = 0, width_ = 1;  ///< of the window of volumes
   double grab_depth_ = 0;         ///< of the point that is held, as on the display
