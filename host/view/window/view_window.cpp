@@ -306,7 +306,6 @@ void ViewWindow::act(const std::string& key) {
   if (key == "k") color_surfaces();
   if (key == "m") turn_film();
   if (key == "o" && curve_) curve_->turn();
-  if (key == "F11") turn_full_screen();
   if (key == "F12") save_next_picture();
 }
 
@@ -315,10 +314,6 @@ void ViewWindow::save_next_picture() {
     save_picture(path);
     note("wrote " + path);
   });
-}
-
-void ViewWindow::turn_full_screen() {
-  window_->SetFullScreen(window_->GetFullScreen() == 0);
 }
 
 /// @returns whether mouse or devices held anything

@@ -78,7 +78,6 @@ class ViewWindow {
   void pull(int x, int y);
   bool turn_window(int x, int y);
   void set_look(VolumeLook look);
-  void turn_full_screen();
   void note(const std::string& text);
   std::string overlay();
   void color_surfaces();
