@@ -222,8 +222,9 @@ void ScreenServer::swap() {
   if (!group_.may_swap(clock_.seconds())) return;
   const double seconds = drawing_.seconds();
   const std::int64_t late_before = group_.late_count();
-  for (const std::string& member : group_.swap()) send(member, SwapMessage{frame_});
-  if (group_.late_count() > late_before) return;
+  const std::vector<std::string> members = group_.swap();
+  for (const std::string& member : members) send(member, SwapMessage{frame_});
+  if (members.empty() || group_.late_count() > late_before) return;
   const std::lock_guard lock(mutex_);
   ++counts_.ready_frames;
   counts_.ready_seconds += seconds;
