@@ -256,9 +256,12 @@ def main():
             check_steps(window, folder)
             pixel = check_tools(window)
             window.close()
-            refused = view(command, ["scene.json", "--record", "tissue.nii"], environment, folder)
-            if refused.returncode != 1 or "tissue.nii: is also an input" not in refused.stderr:
-                fail(f"a result in place of an input: status {refused.returncode}, {refused.stderr!r}")
+            # Without the ball and the fingers it is another scene.
+            for option, file, problem in (("--record", "tissue.nii", "is also an input"),
+                                          ("--replay", "input.txt", "was recorded with another scene")):
+                refused = view(command, ["scene.json", option, file], environment, folder)
+                if refused.returncode != 1 or f"{file}: {problem}" not in refused.stderr:
+                    fail(f"{option} {file}: status {refused.returncode}, {refused.stderr!r}")
         check_record((folder / "input.txt").read_text(encoding="ascii"), pixel)
 
 
