@@ -84,23 +84,27 @@ TEST(SceneLaws, MouthOpensSymmetricallyAndLosesItsBonds) {
   }
   EXPECT_GT(bonded, 5e-5);
   EXPECT_LT(asymmetry, 1e-6);
-  EXPECT_LT(simulator.record().adhered_area, 0.3 * bonded);
+  EXPECT_LT(simulator.record().adhered_area, 0.15 * bonded);
   for (const ContactPoint& contact : simulator.contacts()) {
-    const double reach = 0.004;  // of the springs around the corners at x = +-0.0275
+    const double reach = 0.004;  // of the springs around the corners, up to x = +-0.0275
     EXPECT_GT(std::abs(contact.position[0]), 0.0275 - reach);
   }
 }
 
-/// The first impacts.
+/// Until all have landed: the first 2.4 s.
 TEST(SceneLaws, CandyLandsWithoutCrossingAnything) {
   Simulator simulator(shipped("candy"));
   const double start = simulator.record().energy.total();
-  const Watch watch = watch_steps(simulator, 30, 10);
+  const Watch watch = watch_steps(simulator, 300, 60);
   SCOPED_TRACE(testing::Message() << watch);
   EXPECT_TRUE(watch.is_finite);
   EXPECT_EQ(watch.crossings, 0);
+  EXPECT_EQ(watch.unconverged, 0);
   EXPECT_GT(watch.least_distance, 0);
-  EXPECT_LT(simulator.record().energy.total(), start);
+  EXPECT_LT(simulator.record().energy.total(), 0.5 * start);
+  EXPECT_LT(simulator.record().energy.kinetic, 1e-3 * start);
+  EXPECT_GT(simulator.record().adhered_area, 0);
+  EXPECT_LT(pushing_count(simulator), 1000);
 }
 
 /// After the last sweet has landed, energy falls; as many contacts carry an impulse as the paper
