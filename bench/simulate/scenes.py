@@ -222,7 +222,7 @@ def cases(tool):
         options = ["--warp", "--intensity", "density", "--outputs", "mask", "--steps", str(steps)]
         yield f"volumes/{name}", json.loads(text[name]), options, warp_row
     # The lips of coarser lattices cross.
-    for name, factors in (("cloth", (0.5, 1, 2)), ("mouth", (1, 4 / 3, 5 / 3))):
+    for name, factors in (("cloth", (0.5, 1, 2)), ("mouth", (1, 4 / 3, 5 / 3, 2))):
         for factor in factors:
             yield f"finer/{name} x {factor:.3g}", refined(json.loads(text[name]), factor), [], bond_row
     for factor in (1, 4 / 3, 5 / 3, 2):
