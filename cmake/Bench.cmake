@@ -163,3 +163,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_link_libraries(tetwarp_bench_peers PRIVATE tetwarp tetwarp_hwy tetwarp_openmp
     tetwarp_options benchmark::benchmark Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
 endif()
+if(TETWARP_HAS_SCREENS)
+  add_executable(tetwarp_bench_screens bench/view/screen_frames.cpp)
+  target_link_libraries(tetwarp_bench_screens PRIVATE tetwarp_view_link tetwarp_options)
+endif()

@@ -183,6 +183,7 @@ tetwarp_add_cli_tests(tetwarp_view_tests
   tests/view/test_screens.cpp
   tests/view/test_view_colors.cpp
   tests/view/test_view_devices.cpp
+  tests/view/test_view_keys.cpp
   tests/view/test_view_parts.cpp)
 target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_parts)
 if(tetwarp_gamepad_tests)
@@ -195,16 +196,21 @@ tetwarp_discover(tetwarp_view_tests unit)
 if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
   add_test(NAME window COMMAND ${TETWARP_PYTHON3} -B
     ${PROJECT_SOURCE_DIR}/tests/view/check_window.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME window_keys COMMAND ${TETWARP_PYTHON3} -B
+    ${PROJECT_SOURCE_DIR}/tests/view/check_keys.py $<TARGET_FILE:tetwarp_command>)
   # One at a time: displays in several namespaces may get the same number.
-  set_tests_properties(window PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
+  set_tests_properties(window window_keys PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
     RESOURCE_LOCK display)
   if(TETWARP_HAS_SCREENS)
     add_test(NAME screens COMMAND ${TETWARP_PYTHON3} -B
       ${PROJECT_SOURCE_DIR}/tests/view/check_screens.py $<TARGET_FILE:tetwarp_command>)
     add_test(NAME network COMMAND ${TETWARP_PYTHON3} -B
       ${PROJECT_SOURCE_DIR}/tests/view/check_network.py $<TARGET_FILE:tetwarp_command>)
-    set_tests_properties(screens network PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
+    add_test(NAME stereo COMMAND ${TETWARP_PYTHON3} -B
+      ${PROJECT_SOURCE_DIR}/tests/view/check_stereo.py $<TARGET_FILE:tetwarp_command>)
+    set_tests_properties(screens network stereo PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
       RESOURCE_LOCK display)
+    set_tests_properties(stereo PROPERTIES LABELS long)
   endif()
 endif()
 

@@ -2,9 +2,10 @@
 # left out where this is missing. `tetwarp view` then names the package.
 add_library(tetwarp_view_parts STATIC)
 tetwarp_sources(tetwarp_view_parts host/view
-  body_carrier.cpp curve_editor.cpp finger_pair.cpp input_delay.cpp input_device.cpp
+  body_carrier.cpp camera_keys.cpp curve_editor.cpp finger_pair.cpp input_delay.cpp input_device.cpp
   input_log.cpp live_simulation.cpp live_start.cpp live_volumes.cpp look_surfaces.cpp
-  obstacle_surface.cpp pick.cpp ray_quality.cpp scene_look.cpp simulated_device.cpp
+  obstacle_surface.cpp overlay_text.cpp pick.cpp ray_quality.cpp scene_look.cpp
+  simulated_device.cpp slice_look.cpp
   surface_values.cpp value_colors.cpp view_options.cpp view_scene.cpp view_tools.cpp
   volume_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/screens
@@ -24,7 +25,7 @@ set_target_properties(tetwarp_view_parts PROPERTIES
   UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_view_parts PUBLIC ${PROJECT_SOURCE_DIR})
 target_link_libraries(tetwarp_view_parts PUBLIC tetwarp_io
-  PRIVATE nlohmann_json::nlohmann_json tetwarp_options)
+  PRIVATE fmt::fmt nlohmann_json::nlohmann_json tetwarp_options)
 target_compile_options(tetwarp_view_parts PRIVATE $<$<CONFIG:Release>:-O1>)
 
 set(TETWARP_VIEW AUTO CACHE STRING "The window of tetwarp view: AUTO, ON or OFF")
@@ -110,9 +111,9 @@ message(STATUS "tetwarp: devices of tetwarp view: ${tetwarp_device_sources}")
 
 add_executable(tetwarp_view)
 tetwarp_sources(tetwarp_view host/view/window
-  curve_panel.cpp cut_plane.cpp device_hand.cpp mouse_style.cpp overlay_text.cpp scene_actors.cpp
+  curve_panel.cpp cut_plane.cpp device_hand.cpp mouse_style.cpp pointer.cpp scene_actors.cpp
   ${tetwarp_screen_sources} surface_actor.cpp value_legend.cpp view_window.cpp volume_actors.cpp
-  window_film.cpp window_picture.cpp window_texts.cpp
+  window_camera.cpp window_film.cpp window_picture.cpp window_texts.cpp
   ALONE main.cpp)
 set_target_properties(tetwarp_view PROPERTIES
   OUTPUT_NAME tetwarp-view UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)

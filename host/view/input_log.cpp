@@ -2,17 +2,22 @@
 /// One line per event: its tick, a word and numbers.
 #include "host/view/input_log.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <tetwarp/error.hpp>
 
+#include "host/base/number_hash.hpp"
+
 namespace tetwarp::view {
 namespace {
-constexpr const char* first_line = "tetwarp input 1";
+constexpr const char* first_line = "tetwarp input 2";
+constexpr const char* start_word = "start";
 constexpr const char* const words[] = {"grab", "move", "release", "restart", "carry", "limit"};
 
 template <class Number>
@@ -88,6 +93,13 @@ InputEvent event_of(LineReader& line, std::int64_t tick, const std::string& word
   return event;
 }
 
+void read_start(const std::string& text, InputLog& log) {
+  LineReader line(text);
+  if (line.word() != start_word) throw std::invalid_argument("is not start and a number");
+  log.start = line.number<std::uint64_t>();
+  line.end();
+}
+
 /// @returns whether it was the last line
 bool add_line(const std::string& text, InputLog& log) {
   LineReader line(text);
@@ -107,8 +119,20 @@ bool add_line(const std::string& text, InputLog& log) {
 }
 }  // namespace
 
+std::uint64_t start_hash(std::span<const std::byte> checkpoint) {
+  NumberHash hash;
+  for (std::size_t n = 0; n < checkpoint.size(); n += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, checkpoint.data() + n, std::min(sizeof word, checkpoint.size() - n));
+    hash.add_bits(word);
+  }
+  hash.add_bits(checkpoint.size());
+  return hash.value();
+}
+
 std::string text_of(const InputLog& log) {
   std::string text = std::string(first_line) + "\n" + log.scene + "\n";
+  text += std::string(start_word) + " " + number(log.start) + "\n";
   for (const InputEvent& event : log.events) {
     text += number(event.tick) + " " + words[static_cast<std::size_t>(event.kind)];
     if (event.kind == InputKind::grab) {
@@ -137,7 +161,11 @@ InputLog read_input_log(const std::string& path) {
   std::getline(file, log.scene);
   for (int n = 3; std::getline(file, line); ++n) {
     try {
-      if (add_line(line, log)) return log;
+      if (n == 3) {
+        read_start(line, log);
+      } else if (add_line(line, log)) {
+        return log;
+      }
     } catch (const std::invalid_argument& error) {
       throw IoError(path, "", "line " + std::to_string(n) + " " + error.what());
     }

@@ -1,7 +1,9 @@
 /// @file input_log.hpp
 /// What a user did to a simulation, by step, as a file.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,10 +33,15 @@ struct InputEvent {
 };
 
 struct InputLog {
-  std::string scene;               ///< ViewOptions::scene_words()
+  std::string scene;               ///< ViewOptions::scene_words(), for messages
+  std::uint64_t start = 0;         ///< as start_hash()
   std::vector<InputEvent> events;  ///< ticks do not fall
   std::int64_t ticks = 0;          ///< steps made in all
 };
+
+/// A hash of the state of a start, which is equal if scene, tools and state are.
+/// @param checkpoint  of the simulation before its first step
+std::uint64_t start_hash(std::span<const std::byte> checkpoint);
 
 /// The lines of a file; numbers keep all their bits.
 std::string text_of(const InputLog& log);

@@ -50,6 +50,8 @@ LiveSimulation::LiveSimulation(Scene scene,
   carrier_.reset();
   fingers_.reset(carrier_);
   log_.scene = options.scene_words();
+  log_.start = start_hash(start_);
+  check_start(options, log_.start, replay_);
   if (replay_) last_tick_ = replay_->ticks;
   if (options.steps) last_tick_ = *options.steps;
 }

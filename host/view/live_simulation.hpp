@@ -60,6 +60,7 @@ class LiveSimulation {
   /// @param replay  what to repeat, in place of grabs and restarts of the user
   /// @throws std::invalid_argument  as Simulator, and where steps that a limit of time ended could
   ///                                not be repeated: several threads, back end cuda
+  /// @throws IoError  the replay is of another scene or another start
   LiveSimulation(Scene scene, const ViewOptions& options, std::optional<InputLog> replay);
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
@@ -82,9 +83,11 @@ class LiveSimulation {
   /// Ends the thread after the running step and the single steps that were ordered.
   void end();
 
-  /// After end(): the steps made, and what the user did before them.
+  /// After end(): the steps made, and what the user did before them. Of the start at any time.
   const InputLog& log() const { return log_; }
   const LiveSeconds& seconds() const { return seconds_; }
+  /// Steps that max_step_seconds ended.
+  std::int64_t late_steps() const { return late_steps_; }
   std::vector<std::byte> checkpoint() const { return simulator_.checkpoint(); }
 
  private:

@@ -53,6 +53,15 @@ SimulateOptions simulate_options(const ViewOptions& of, const std::optional<Inpu
   return options;
 }
 
+void check_start(const ViewOptions& options,
+                 std::uint64_t start,
+                 const std::optional<InputLog>& replay) {
+  if (!replay || replay->start == start) return;
+  throw IoError(options.replay, "",
+                "was recorded with another scene or start than " + options.scene_words() +
+                    "; view what it was recorded with, unchanged: " + replay->scene);
+}
+
 std::vector<std::byte> first_state(const ViewOptions& options, Simulator& simulator) {
   if (!options.restart.empty()) {
     const bool is_of_scene = has_handle(simulator.scene());

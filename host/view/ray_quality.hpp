@@ -24,10 +24,15 @@ class RayQuality {
   RaySpacing moving() const;
   /// Of a picture that nobody waits for: at most twice as coarse as the finest.
   RaySpacing resting() const;
+  /// Whether the last pictures took so long that something else is better shown.
+  bool gives_up() const;
+  /// From now on it does not give up because of earlier pictures.
+  void try_again() { slow_ = 0; }
 
  private:
   std::size_t level_;
   int quick_ = 0;  ///< pictures in a row that would have been in time more finely
+  int slow_ = 0;   ///< that took far too long
 };
 
 }  // namespace tetwarp::view

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <stdexcept>
 #include <string_view>
 
@@ -121,13 +120,10 @@ bool read(std::string_view text, std::optional<T>& value) {
 }  // namespace
 
 std::string ViewOptions::scene_words() const {
-  const auto name_of = [](const std::string& file) {
-    return std::filesystem::path(file).filename().string();
-  };
-  std::string words = name_of(scene());
+  std::string words = scene();
   if (ball) words += " --ball ";
   write(words, ball);
-  if (!restart.empty()) words += " --restart " + name_of(restart);
+  if (!restart.empty()) words += " --restart " + restart;
   if (fingers) {
     words += " --fingers ";
     write(words, fingers);

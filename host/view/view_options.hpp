@@ -48,8 +48,7 @@ struct ViewOptions {
 
   /// The scene, for messages.
   const std::string& scene() const { return scene_file.empty() ? scene_name : scene_file; }
-  /// The scene with what options add to it, as a record of input names it; of files the name
-  /// without the folder.
+  /// The scene with what options add to it, as a record of input names it.
   std::string scene_words() const;
 };
 

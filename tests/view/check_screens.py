@@ -59,11 +59,12 @@ def unit(a):
     return tuple(x / size for x in a)
 
 
-def seen(screen, x, shift=0):
-    """Where a screen shows a point of the world to an eye that is `shift` to the right: shares of its
-    width from the left and of its height from the top. The ray to the point meets the screen there."""
+def seen(screen, x, shift=0, head=EYE):
+    """Where a screen shows a point of the world to an eye that is `shift` to the right of the head: shares
+    of its width from the left and of its height from the top. The ray to the point meets the screen
+    there."""
     low, side, high = (world_of(c) for c in CORNERS[screen])
-    eye = world_of((EYE[0] + shift, EYE[1], EYE[2]))
+    eye = world_of((head[0] + shift, head[1], head[2]))
     across, up = minus(side, low), minus(high, side)
     normal = unit(cross(across, up))
     way = minus(x, eye)
@@ -72,15 +73,15 @@ def seen(screen, x, shift=0):
     return dot(place, across) / dot(across, across), 1 - dot(place, up) / dot(up, up)
 
 
-def write_tissue(folder):
-    """A ball of tissue in air, whose rim is soft, as NIfTI: a volume across the edge of left and
-    front."""
-    n, size, (x, y, z) = 24, 2.4 * TISSUE_RADIUS, TISSUE
+def write_tissue(folder, center=TISSUE, radius=TISSUE_RADIUS):
+    """A ball of tissue in air, whose rim is soft, as NIfTI: by itself a volume across the edge of left
+    and front. @returns its body"""
+    n, size, (x, y, z) = 24, 2.4 * radius, center
     spacing = size / n
     samples = bytearray()
     for k, j, i in itertools.product(range(n), repeat=3):
         away = math.dist((i + 0.5, j + 0.5, k + 0.5), (n / 2, n / 2, n / 2)) * spacing
-        value = min(max((TISSUE_RADIUS - away) / (3 * spacing) + 0.5, 0), 1)
+        value = min(max((radius - away) / (3 * spacing) + 0.5, 0), 1)
         samples += struct.pack("<h", round(1000 * value))
     # NIfTI-1: sizes, int16, spacings, offset, slope, meters, rows of the matrix.
     header = bytearray(352)
@@ -91,9 +92,9 @@ def write_tissue(folder):
     struct.pack_into("<2f", header, 108, 352, 1)
     header[123] = 1
     struct.pack_into("<h", header, 254, 1)
-    for row, center in enumerate((x, y, z)):
+    for row, middle in enumerate((x, y, z)):
         numbers = [spacing * (column == row) for column in range(3)]
-        struct.pack_into("<4f", header, 280 + 16 * row, *numbers, center - size / 2 + spacing / 2)
+        struct.pack_into("<4f", header, 280 + 16 * row, *numbers, middle - size / 2 + spacing / 2)
     header[344:348] = b"n+1\0"
     (folder / "tissue.nii").write_bytes(header + samples)
     return """{"name": "tissue", "kind": "fem", "volume": {"file": "tissue.nii", "threshold": 300},
@@ -250,7 +251,8 @@ def curve_place(value, opacity):
 
 def changed_pixels(first, second):
     return sum(max(abs(a - b) for a, b in zip(p, q)) > 20
-               for one, other in zip(first, second) for p, q in zip(one, other))
+               for one, other in zip(first, second) if one != other
+               for p, q in zip(one, other) if p != q)
 
 
 def check_curve(command, environment, folder):

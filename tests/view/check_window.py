@@ -3,6 +3,7 @@
 
     check_window.py COMMAND    exit status 77 where Xvfb or xdotool is missing
 """
+import itertools
 import os
 import shutil
 import struct
@@ -27,6 +28,28 @@ def fail(text):
     sys.exit(1)
 
 
+def unfiltered(kind, line, before):
+    """A row of a PNG of three bytes a pixel, from the bytes of its filter and the row before it."""
+    if kind == 2:
+        return bytearray((a + b) & 255 for a, b in zip(line, before))
+    for channel in range(3) if kind else ():
+        values, above = line[channel::3], before[channel::3]
+        if kind == 1:
+            values = itertools.accumulate(values, lambda a, b: (a + b) & 255)
+        else:
+            left = corner = 0
+            for n, (value, up) in enumerate(zip(values, above)):
+                if kind == 3:
+                    near = (left + up) // 2
+                else:
+                    a, b, c = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+                    near = left if a <= b and a <= c else up if b <= c else corner
+                values[n] = left = (value + near) & 255
+                corner = up
+        line[channel::3] = bytes(values)
+    return line
+
+
 def pixels_of(path):
     """Width, and rows of (red, green, blue), of a PNG without interlacing."""
     data, chunks, place = path.read_bytes(), {}, 8
@@ -35,34 +58,24 @@ def pixels_of(path):
         chunks[kind] = chunks.get(kind, b"") + data[place + 8:place + 8 + size]
         place += size + 12
     width, height = struct.unpack(">II", chunks[b"IHDR"][:8])
-    raw, stride, rows, before = zlib.decompress(chunks[b"IDAT"]), 3 * width, [], None
+    raw, stride, rows = zlib.decompress(chunks[b"IDAT"]), 3 * width, []
+    line = bytearray(stride)
     for y in range(height):
-        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        before = before or bytearray(stride)
-        for x in range(stride):
-            left = line[x - 3] if x >= 3 else 0
-            corner = before[x - 3] if x >= 3 else 0
-            above = before[x]
-            if kind == 1:
-                line[x] = (line[x] + left) & 255
-            elif kind == 2:
-                line[x] = (line[x] + above) & 255
-            elif kind == 3:
-                line[x] = (line[x] + (left + above) // 2) & 255
-            elif kind == 4:
-                guess = left + above - corner
-                near = min((abs(guess - v), n) for n, v in enumerate((left, above, corner)))[1]
-                line[x] = (line[x] + (left, above, corner)[near]) & 255
-        rows.append([tuple(line[3 * x:3 * x + 3]) for x in range(width)])
-        before = line
+        start = y * (stride + 1)
+        line = unfiltered(raw[start], bytearray(raw[start + 1:start + 1 + stride]), line)
+        rows.append(list(zip(line[::3], line[1::3], line[2::3])))
     return width, rows
 
 
+def orange(pixel):
+    """Whether it has the first body's color, in any light."""
+    r, g, b = pixel
+    return r > 60 and r > 1.5 * g and g > 1.4 * b
+
+
 def orange_pixels(path):
-    """Pixels of the first body's color, in any light."""
     _, rows = pixels_of(path)
-    return [(x, y) for y, row in enumerate(rows) for x, (r, g, b) in enumerate(row)
-            if r > 60 and r > 1.5 * g and g > 1.4 * b]
+    return [(x, y) for y, row in enumerate(rows) for x, pixel in enumerate(row) if orange(pixel)]
 
 
 def foot_of(pixels):
@@ -99,16 +112,17 @@ def view(command, words, environment, folder):
 
 def press(command, words, steps, environment, folder):
     """Views the scene at the upper left of the display while xdotool takes steps there, and ends by
-    the key q, which does not come up, since its window is gone by then. @returns what it prints"""
+    the key Escape, which does not come up, since its window is gone by then. @returns what it
+    prints"""
     with subprocess.Popen([command, "view", *words], env=environment, cwd=folder,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as window:
         try:
             subprocess.run(
                 f"""xdotool search --sync --onlyvisible --name tetwarp:.scene.json windowmove %1 0 0
-                    windowfocus --sync %1 {steps} keydown q""".split(),
+                    windowfocus --sync %1 {steps} keydown Escape""".split(),
                 env=environment, timeout=SECONDS, check=True, stdout=subprocess.DEVNULL)
             printed, problems = window.communicate(timeout=SECONDS)
-            subprocess.run(["xdotool", "keyup", "q"], env=environment, timeout=SECONDS, check=True)
+            subprocess.run(["xdotool", "keyup", "Escape"], env=environment, timeout=SECONDS, check=True)
         finally:
             window.kill()
     if window.returncode != 0 or problems:
@@ -141,8 +155,8 @@ def check_pull(command, environment, folder, body):
     y = min(place[1] for place in body if place[0] == x) + 12
     words = ["scene.json", "--paused", "--size", "320,240", "--record", "input.txt",
              "--checkpoint", "first.bin"]
-    steps = f"""mousemove {x} {y} mousedown 1 mousemove {x + 40} {y - 10} key s
-        mousemove {x + 60} {y - 20} key s key s mouseup 1 key s key s key x key i key comma key x"""
+    steps = f"""mousemove {x} {y} mousedown 1 mousemove {x + 40} {y - 10} key period
+        mousemove {x + 60} {y - 20} key period key period mouseup 1 key period key period"""
     press(command, words, steps, environment, folder)
     text = (folder / "input.txt").read_text(encoding="ascii")
     for word in (" grab block ", " move ", " release\n", "5 end\n"):
@@ -163,8 +177,9 @@ def check_right_button(command, environment, folder, body):
     y = min(place[1] for place in body if place[0] == x) + 12
     words = ["scene.json", "--paused", "--size", "320,240", "--record", "right.txt", "--screenshot",
              "right.png"]
-    steps = f"""mousemove {x} {y} mousedown 1 mousemove {x + 30} {y} key s mousedown 3
-        mousemove {x + 30} {y + 60} key s mouseup 3 mousemove {x + 40} {y} key s mouseup 1 key s"""
+    steps = f"""mousemove {x} {y} mousedown 1 mousemove {x + 30} {y} key period mousedown 3
+        mousemove {x + 30} {y + 60} key period mouseup 3 mousemove {x + 40} {y} key period mouseup 1
+        key period"""
     press(command, words, steps, environment, folder)
     text = (folder / "right.txt").read_text(encoding="ascii")
     lines = [line.split() for line in text.splitlines()]

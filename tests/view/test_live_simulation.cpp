@@ -230,7 +230,7 @@ TEST(LiveSimulation, AReplayEndsAtInputThatCannotBe) {
         InputEvent{.tick = 2, .kind = InputKind::move}, InputEvent{.tick = 2}}) {
     ViewOptions options;
     options.replay = "input.txt";
-    InputLog log;
+    InputLog log = LiveSimulation(live_scene(), options, {}).log();
     log.events = {bad, {.tick = 2, .kind = InputKind::restart}};
     log.ticks = 5;
     LiveSimulation simulation(live_scene(), options, log);
@@ -242,6 +242,33 @@ TEST(LiveSimulation, AReplayEndsAtInputThatCannotBe) {
     EXPECT_TRUE(simulation.frames().front().message.starts_with(
         "input.txt: its input before step 3 cannot be repeated: "))
         << simulation.frames().front().message;
+  }
+}
+
+/// Whatever the names: a change of the scene, its tools or its start is another simulation.
+TEST(LiveSimulation, AReplayIsOfTheSameSceneAndStart) {
+  ViewOptions options, repeat;
+  options.scene_file = "recorded.json";
+  const InputLog log = LiveSimulation(live_scene(), options, {}).log();
+  repeat.scene_file = "elsewhere/renamed.json";
+  repeat.replay = "input.txt";
+  EXPECT_NO_THROW(LiveSimulation(live_scene(), repeat, log));
+  std::vector<Scene> others(4, live_scene());
+  others[0].bodies[1].pose.position[2] += 1e-9;
+  others[1].time_step *= 2;
+  others[2].bodies[0].material.youngs_modulus += 1;
+  repeat.scene_file = "recorded.json";
+  repeat.ball = {{1, 2, 3, 0.1}};
+  others[3].bodies.pop_back();
+  add_tools(repeat, others[3]);
+  for (const Scene& other : others) {
+    try {
+      const LiveSimulation simulation(other, repeat, log);
+      ADD_FAILURE();
+    } catch (const IoError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("input.txt: was recorded with another"))
+          << error.what();
+    }
   }
 }
 

@@ -50,7 +50,7 @@ TEST(ScreenMessage, IsTheSameAfterItsBytes) {
                      head,
                      0.06,
                      {{0, 1, 0}, {4, 5, 6}, {}},
-                     {1, false, 0.5, 2, Cut{{1, 2, 3}, {0, 0.6, 0.8}}},
+                     {1, false, 0.5, 2, {{0, 0.25, 1}, 2}, Cut{{1, 2, 3}, {0, 0.6, 0.8}}},
                      {}};
   frame.look.curve = {{0, {1, 0, 0}, 0}, {0.5, {0, 0.25, 0}, 0.5}, {1, {0, 0, 1}, 1}};
   frame.state = {std::byte{3}};
@@ -92,6 +92,12 @@ TEST(ScreenMessage, NumbersOutOfRangeAreRefused) {
   is_refused(bad);
   bad = frame;
   bad.look.volumes = 3;
+  is_refused(bad);
+  bad = frame;
+  bad.look.slices.places[1] = 1.01;
+  is_refused(bad);
+  bad = frame;
+  bad.look.slices.alone = 3;
   is_refused(bad);
   bad = frame;
   bad.look.cut = Cut{{0, 0, 0}, {0, 0, 2}};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
+#include "host/view/pick.hpp"
 #include "host/view/screens/off_axis.hpp"
 #include "host/view/screens/room_file.hpp"
 #include "host/view/screens/screen_keys.hpp"
@@ -90,6 +91,37 @@ TEST(OffAxis, NeighborsMeetAtTheirEdge) {
     }
   }
   EXPECT_EQ(pairs, 7);
+}
+
+/// A ray through the place of a point on the screen meets the point, whatever the eye and the
+/// screen.
+TEST(OffAxis, ARayThroughWhereAPointIsSeenMeetsIt) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(0.02, 0.98), shift(-0.3, 0.3), depth(1.2, 9);
+  for (const std::string& name : room_names()) {
+    for (const Screen& screen : shipped(name).screens) {
+      const Point3 eye =
+          plus(shipped(name).observer, {shift(random), shift(random), shift(random)});
+      const Point3 across = minus(screen.lower_right, screen.lower_left);
+      const Point3 upwards = minus(screen.upper_right, screen.lower_right);
+      const Point3 on_screen = plus(
+          screen.lower_left, plus(times(share(random), across), times(share(random), upwards)));
+      const Point3 x = plus(eye, times(depth(random), minus(on_screen, eye)));
+      const Point3 place = seen(screen, eye, x);
+      const OffAxisView view = off_axis_view(screen, eye).value();
+      const auto& [left, right, bottom, top] = view.tangents;
+      const Point3 back = unit(minus(view.eye, view.target)), side = cross(view.up, back);
+      const Point3 direction =
+          plus(plus(times(left + (right - left) * (place[0] + 1) / 2, side),
+                    times(bottom + (top - bottom) * (place[1] + 1) / 2, view.up)),
+               times(-1, back));
+      const std::vector<std::vector<Point3>> corners{
+          {plus(x, side), minus(x, plus(side, view.up)), plus(x, minus(view.up, side))}};
+      const auto met = pick(corners, {{{0, 1, 2}}}, eye, direction);
+      ASSERT_TRUE(met) << name;
+      EXPECT_LT(norm(minus(met->point, x)), 1e-12 * norm(minus(x, eye)) + 1e-12) << name;
+    }
+  }
 }
 
 TEST(OffAxis, DepthGoesFromNearestToFarthest) {

@@ -88,6 +88,7 @@ TEST(ViewOptions, AreTheSameAfterTheirWords) {
 InputLog some_input() {
   InputLog log;
   log.scene = "a scene.json";
+  log.start = 0xfedcba9876543210;
   log.events = {{.tick = 3,
                  .kind = InputKind::grab,
                  .handle = {.body = "head",
@@ -113,6 +114,7 @@ TEST(InputLog, KeepsAllBits) {
   std::ofstream(path) << text_of(some_input());
   const InputLog log = read_input_log(path);
   EXPECT_EQ(log.scene, "a scene.json");
+  EXPECT_EQ(log.start, some_input().start);
   EXPECT_EQ(log.events, some_input().events);
   EXPECT_EQ(log.ticks, 20);
 }
@@ -129,12 +131,14 @@ TEST(InputLog, NamesTheLineThatIsWrong) {
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
     }
   };
-  const std::string head = "tetwarp input 1\nchain\n";
+  const std::string names = "tetwarp input 2\nchain\n", head = names + "start 17\n";
   refuses("", "is not a file that tetwarp view --record wrote");
   refuses(head, "is incomplete");
-  refuses(head + "0 push\n", "line 3 'push' is not grab");
-  refuses(head + "0 move 1 2\n", "line 3 ends too early");
-  refuses(head + "4 release\n3 release\n", "line 4 its step is before");
+  refuses(names + "0 release\n", "line 3 is not start and a number");
+  refuses(names + "start -1\n", "line 3 '-1' is not a number");
+  refuses(head + "0 push\n", "line 4 'push' is not grab");
+  refuses(head + "0 move 1 2\n", "line 4 ends too early");
+  refuses(head + "4 release\n3 release\n", "line 5 its step is before");
   refuses(head + "0 move 1 2 nan\n", "'nan' is not a number");
   refuses(head + "0 release 1\n", "one word too many");
 }
@@ -248,6 +252,24 @@ TEST(RayQuality, SettlesWhereThePictureIsInTime) {
       EXPECT_LE(quality.resting().pixels, settled.pixels);
     }
   }
+}
+
+/// Rays are given up after five pictures in a row of more than a second, and not again because of
+/// the same ones.
+TEST(RayQuality, GivesUpWhereEvenTheCoarsestTakesLong) {
+  RayQuality quality;
+  const auto draw = [&](int count, double seconds) {
+    for (int n = 0; n < count; ++n) quality.drew(seconds);
+    return quality.gives_up();
+  };
+  EXPECT_FALSE(draw(50, 0.99));
+  EXPECT_FALSE(draw(4, 1.01));
+  EXPECT_FALSE(draw(1, 0.5));
+  EXPECT_FALSE(draw(4, 20));
+  EXPECT_TRUE(draw(1, 1.01));
+  quality.try_again();
+  EXPECT_FALSE(draw(4, 3));
+  EXPECT_TRUE(draw(1, 3));
 }
 
 }  // namespace

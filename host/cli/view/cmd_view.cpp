@@ -46,10 +46,10 @@ std::string find_viewer() {
                            "build again, or set TETWARP_VIEWER to its path");
 }
 
-/// Nothing is written to a file that is read, those that the scene names among them, or twice.
+/// Nothing is written to a file that an option names, or twice. The viewer, which reads the scene,
+/// checks the files that the scene names.
 void check_files(const view::ViewOptions& options) {
   std::vector<std::string> inputs, outputs;
-  if (!options.scene_file.empty()) read_scene(options.scene_file, &inputs);
   for (const std::string& device : CLI::detail::split(options.devices, ',')) {
     if (fs::exists(device)) inputs.push_back(device);
   }

@@ -220,7 +220,14 @@ void ScreenServer::welcome(const std::string& member, const JoinMessage& message
 
 void ScreenServer::swap() {
   if (!group_.may_swap(clock_.seconds())) return;
-  for (const std::string& member : group_.swap()) send(member, SwapMessage{frame_});
+  const double seconds = drawing_.seconds();
+  const std::int64_t late_before = group_.late_count();
+  const std::vector<std::string> members = group_.swap();
+  for (const std::string& member : members) send(member, SwapMessage{frame_});
+  if (members.empty() || group_.late_count() > late_before) return;
+  const std::lock_guard lock(mutex_);
+  ++counts_.ready_frames;
+  counts_.ready_seconds += seconds;
 }
 
 /// A screen that draws for long is silent as one whose process ended, but the connection of the
@@ -256,6 +263,7 @@ void ScreenServer::send_frame() {
   if (tracked_) message.head = *tracked_;
   message.eye_separation = room_.eye_separation;
   const Bytes bytes = view::bytes_of(ToScreen(std::move(message)));
+  drawing_ = Stopwatch();
   for (const std::string& member : members) send(member, bytes);
   sent_ = now;
   needs_frame_ = false;

@@ -20,12 +20,14 @@ namespace tetwarp::view {
 
 /// How the screens are doing.
 struct ScreenCounts {
-  std::int64_t screens = 0;      ///< that take part now
-  std::int64_t frames = 0;       ///< sent in all
-  std::int64_t frame_bytes = 0;  ///< of the last frame, for one screen
-  std::int64_t late = 0;         ///< frames that a screen had not drawn in time
-  std::int64_t lost = 0;         ///< screens that fell silent
-  std::int64_t malformed = 0;    ///< messages that were ignored
+  std::int64_t screens = 0;       ///< that take part now
+  std::int64_t frames = 0;        ///< sent in all
+  std::int64_t frame_bytes = 0;   ///< of the last frame, for one screen
+  std::int64_t ready_frames = 0;  ///< that all screens had drawn in time
+  double ready_seconds = 0;       ///< from sending them until all had, in all
+  std::int64_t late = 0;          ///< frames that a screen had not drawn in time
+  std::int64_t lost = 0;          ///< screens that fell silent
+  std::int64_t malformed = 0;     ///< messages that were ignored
 };
 
 class ScreenServer {
@@ -81,6 +83,7 @@ class ScreenServer {
   std::uint64_t frame_ = 0;
   double sent_ = 0;           ///< when the last frame was [s]
   double asked_ = 0;          ///< when find_gone() was [s]
+  Stopwatch drawing_;         ///< since the last frame was sent
   std::int64_t gone_ = 0;     ///< members that fell silent or whose connection ended
   bool needs_frame_ = false;  ///< something changed since then
 

@@ -47,13 +47,14 @@ template <class Stream, class Value>
 requires std::same_as<std::remove_const_t<Value>, FrameMessage>
 void exchange_members(Stream& stream, Value& message) {
   auto& [session, frame, head, eye_separation, place, look, state] = message;
-  auto& [volumes, shows_contacts, level, width, cut, curve] = look;
-  stream(session, frame, head, eye_separation, place, volumes, shows_contacts, level, width, cut,
-         curve, state);
+  auto& [volumes, shows_contacts, level, width, slices, cut, curve] = look;
+  auto& [places, alone] = slices;
+  stream(session, frame, head, eye_separation, place, volumes, shows_contacts, level, width, places,
+         alone, cut, curve, state);
 }
 
 namespace {
-constexpr std::array<char, 4> own_letters{'t', 'w', 's', '2'};
+constexpr std::array<char, 4> own_letters{'t', 'w', 's', '3'};
 constexpr std::size_t most_curve_points = 64;
 
 void check_head(const HeadPose& head) {
@@ -107,6 +108,9 @@ void check_message(const FrameMessage& message) {
   require(message.eye_separation >= 0 && message.eye_separation <= 1 && look.volumes <= 2 &&
               std::abs(look.level) < 1e6 && look.width > 1e-6 && look.width < 1e6,
           "no look");
+  const auto is_share = [](double share) { return share >= 0 && share <= 1; };
+  require(std::ranges::all_of(look.slices.places, is_share) && look.slices.alone.value_or(0) < 3,
+          "no slices");
   check_curve(look.curve);
   require(
       !look.cut || (is_in_world(look.cut->point) && std::abs(norm(look.cut->normal) - 1) < 1e-6),

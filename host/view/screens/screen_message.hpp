@@ -11,6 +11,7 @@
 #include "host/view/pick.hpp"
 #include "host/view/screens/message_bytes.hpp"
 #include "host/view/screens/room.hpp"
+#include "host/view/slice_look.hpp"
 #include "host/view/volume_colors.hpp"
 
 namespace tetwarp::view {
@@ -47,6 +48,7 @@ struct ScreenLook {
   std::uint8_t volumes = 0;  ///< rays, slices or surfaces, as VolumeLook
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeColors::set_window()
+  SliceLook slices = {};
   std::optional<Cut> cut = {};
   std::vector<ColorPoint> curve = {};  ///< as VolumeColors::set_curve(); empty: nobody changed it
 

@@ -5,6 +5,7 @@
 #include <vtkAbstractVolumeMapper.h>
 #include <vtkActor.h>
 #include <vtkActorCollection.h>
+#include <vtkCamera.h>
 #include <vtkMapper.h>
 #include <vtkPlaneCollection.h>
 #include <vtkVolume.h>
@@ -14,7 +15,20 @@
 
 namespace tetwarp::view {
 
+void CutPlane::turn(const Point3& point, vtkRenderer* renderer) {
+  if (cut_) return set(std::nullopt, renderer);
+  Point3 away{};
+  renderer->GetActiveCamera()->GetViewPlaneNormal(away.data());
+  set(Cut{point, unit(away)}, renderer);
+}
+
+void CutPlane::move(double way, vtkRenderer* renderer) {
+  if (!cut_) return;
+  set(Cut{minus(cut_->point, times(way, cut_->normal)), cut_->normal}, renderer);
+}
+
 void CutPlane::set(const std::optional<Cut>& cut, vtkRenderer* renderer) {
+  cut_ = cut;
   if (cut) {
     plane_->SetOrigin(cut->point.data());
     plane_->SetNormal(times(-1, cut->normal).data());

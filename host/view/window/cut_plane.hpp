@@ -15,8 +15,14 @@ class CutPlane {
  public:
   /// Cuts everything that a renderer has now; nothing: no longer.
   void set(const std::optional<Cut>& cut, vtkRenderer* renderer);
+  /// Cuts at a point as the camera looks, or no longer.
+  void turn(const Point3& point, vtkRenderer* renderer);
+  /// Moves the cut against its normal. @param way  [m]
+  void move(double way, vtkRenderer* renderer);
+  const std::optional<Cut>& cut() const { return cut_; }
 
  private:
+  std::optional<Cut> cut_;
   vtkNew<vtkPlane> plane_;
 };
 

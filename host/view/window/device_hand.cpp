@@ -10,6 +10,7 @@
 #include "host/view/gamepad.hpp"
 #include "host/view/simulated_device.hpp"
 #include "host/view/space_mouse.hpp"
+#include "host/view/window/window_camera.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -17,14 +18,6 @@ std::unique_ptr<InputDevice> open(const std::string& name) {
   if (name == "gamepad") return open_gamepad();
   if (name == "spacemouse") return open_space_mouse();
   return std::make_unique<SimulatedDevice>(name);
-}
-
-Camera camera_of(vtkCamera* camera) {
-  Camera of;
-  camera->GetPosition(of.eye.data());
-  camera->GetFocalPoint(of.target.data());
-  camera->GetViewUp(of.up.data());
-  return of;
 }
 }  // namespace
 
@@ -43,6 +36,16 @@ bool DeviceHand::update(vtkCamera* camera) {
     if (!span) hand.device.reset();
   }
   return has_moved;
+}
+
+bool DeviceHand::let_go() {
+  bool has_held = false;
+  for (Held& hand : hands_) {
+    if (!std::exchange(hand.holds, false)) continue;
+    actions_.release();
+    has_held = true;
+  }
+  return has_held;
 }
 
 bool DeviceHand::is_simulating() const {
@@ -65,10 +68,7 @@ bool DeviceHand::act(Held& hand, const DeviceSpan& span, vtkCamera* camera) {
     return false;
   }
   if (norm(span.state.move) + norm(span.state.turn) <= 0) return false;
-  const Camera moved = moved_camera(now, span);
-  camera->SetPosition(moved.eye.data());
-  camera->SetFocalPoint(moved.target.data());
-  camera->SetViewUp(moved.up.data());
+  set_camera(moved_camera(now, span), camera);
   return true;
 }
 

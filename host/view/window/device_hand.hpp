@@ -27,6 +27,9 @@ class DeviceHand {
 
   /// Reads all devices. @returns whether the camera has moved
   bool update(vtkCamera* camera);
+  /// What the devices hold is let go, also while their buttons are held. @returns whether there was
+  /// anything
+  bool let_go();
   /// Whether a simulated device has more to say.
   bool is_simulating() const;
 

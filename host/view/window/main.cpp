@@ -9,14 +9,17 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
 #include <utility>
 #include <vector>
 
+#include "host/base/stopwatch.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_options.hpp"
 #include "host/view/view_scene.hpp"
@@ -42,22 +45,33 @@ void check_display() {
                            "; start it from a desktop, through ssh -X, or within xvfb-run");
 }
 
+/// Results are not written to the files that the scene names.
+void check_results(const ViewOptions& options, const std::vector<std::string>& inputs) {
+  for (const std::string& output :
+       {options.screenshot, options.film, options.record, options.checkpoint}) {
+    std::error_code error;
+    for (const std::string& input : inputs) {
+      if (!output.empty() && std::filesystem::equivalent(output, input, error)) {
+        throw IoError(output, "", "is also an input; name another output");
+      }
+    }
+  }
+}
+
 /// The scene, with tools.
 Scene load(const ViewOptions& options) {
+  std::vector<std::string> inputs;
   Scene scene = options.scene_file.empty()
                     ? parse_scene(scene_text(options.scene_name), options.scene_name)
-                    : read_scene(options.scene_file);
+                    : read_scene(options.scene_file, &inputs);
+  check_results(options, inputs);
   add_tools(options, scene);
   return scene;
 }
 
 std::optional<InputLog> replay_of(const ViewOptions& options) {
   if (options.replay.empty()) return std::nullopt;
-  InputLog log = read_input_log(options.replay);
-  if (log.scene != options.scene_words()) {
-    throw IoError(options.replay, "", "was recorded with scene " + log.scene + "; view that one");
-  }
-  return log;
+  return read_input_log(options.replay);
 }
 
 void write_results(LiveSimulation& simulation, const ViewOptions& options) {
@@ -69,8 +83,14 @@ void write_results(LiveSimulation& simulation, const ViewOptions& options) {
 }
 
 /// Drawing is all that the other threads do if the simulation has one.
-void print_timing(const LiveSimulation& simulation, std::int64_t pictures, std::clock_t start) {
+/// @param start  processor time at which the simulation began
+/// @param wall   since then [s]
+void print_timing(const LiveSimulation& simulation,
+                  const ViewWindow& window,
+                  std::clock_t start,
+                  double wall) {
   const LiveSeconds& spent = simulation.seconds();
+  const std::int64_t pictures = window.picture_count();
   const auto each = [](double seconds, std::int64_t count) {
     return 1000 * seconds / static_cast<double>(std::max<std::int64_t>(count, 1));
   };
@@ -80,6 +100,9 @@ void print_timing(const LiveSimulation& simulation, std::int64_t pictures, std::
       static_cast<long long>(simulation.log().ticks), each(spent.steps, simulation.log().ticks),
       static_cast<long long>(spent.warp_count), each(spent.warps, spent.warp_count),
       static_cast<long long>(pictures), each(all - spent.steps - spent.warps, pictures));
+  std::printf("wall time: %.1f steps/s in %.1f s, %lld over their time; %.1f pictures/s\n",
+              static_cast<double>(simulation.log().ticks) / wall, wall,
+              static_cast<long long>(simulation.late_steps()), window.picture_rate());
 }
 
 volatile std::sig_atomic_t signal_number = 0;
@@ -88,7 +111,7 @@ extern "C" void note_signal(int signal) {
   signal_number = signal;
 }
 
-/// A signal ends it as the key q does.
+/// A signal ends it as the key Escape does.
 void take_signals() {
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
@@ -110,14 +133,16 @@ void show_scene(const ViewOptions& options) {
   take_signals();
   if (screens) screens->wait_for_screens();
   const std::clock_t start = std::clock();
+  const Stopwatch since_start;
   simulation->begin();
   window.run(signal_number);
   const std::string problem = window.failure();
   simulation->end();
+  const double wall = since_start.seconds();
   write_results(*simulation, options);
   if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   if (options.timing) {
-    print_timing(*simulation, window.picture_count(), start);
+    print_timing(*simulation, window, start, wall);
     if (!window.delay().text().empty()) std::puts(window.delay().text().c_str());
     if (screens) std::puts(screens->status().c_str());
   }

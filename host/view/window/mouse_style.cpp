@@ -61,9 +61,31 @@ bool MouseStyle::follow() {
   return edits_ || grabs_ || tints_ || turns_;
 }
 
+bool MouseStyle::let_go() {
+  const bool has_held = edits_ || grabs_ || tints_ || turns_;
+  if (grabs_) actions_.release();
+  edits_ = grabs_ = tints_ = turns_ = false;
+  return has_held;
+}
+
+bool MouseStyle::turn_wheel(int steps) {
+  const int* const place = GetInteractor()->GetEventPosition();
+  return GetInteractor()->GetShiftKey() != 0 && actions_.move_slice(place[0], place[1], steps);
+}
+
+void MouseStyle::OnMouseWheelForward() {
+  if (!turn_wheel(1)) Superclass::OnMouseWheelForward();
+}
+
+void MouseStyle::OnMouseWheelBackward() {
+  if (!turn_wheel(-1)) Superclass::OnMouseWheelBackward();
+}
+
 void MouseStyle::OnKeyPress() {
-  const char* const key = GetInteractor()->GetKeySym();
-  if (key != nullptr) actions_.press(key);
+  vtkRenderWindowInteractor* const events = GetInteractor();
+  const char* const key = events->GetKeySym();
+  if (key == nullptr) return;
+  actions_.press({key, events->GetShiftKey() != 0, events->GetControlKey() != 0});
 }
 
 }  // namespace tetwarp::view

@@ -97,8 +97,8 @@ void SceneActors::add_arrows(ArrowActors& of, const Rgb& color, vtkRenderer* ren
   of.data->SetPoints(of.places);
   of.data->GetPointData()->AddArray(of.vectors);
   vtkNew<vtkArrowSource> arrow;
-  arrow->SetTipResolution(12);
-  arrow->SetShaftResolution(8);
+  arrow->SetTipResolution(6);
+  arrow->SetShaftResolution(4);
   of.arrow_mapper->SetInputData(of.data);
   of.arrow_mapper->SetSourceConnection(arrow->GetOutputPort());
   of.arrow_mapper->SetOrientationArray("force");
@@ -106,6 +106,8 @@ void SceneActors::add_arrows(ArrowActors& of, const Rgb& color, vtkRenderer* ren
   of.arrow_mapper->SetScaleModeToScaleByMagnitude();
   vtkNew<vtkSphereSource> ball;
   ball->SetRadius(ball_radius * scene_.size);
+  ball->SetThetaResolution(6);
+  ball->SetPhiResolution(4);
   of.ball_mapper->SetInputData(of.data);
   of.ball_mapper->SetSourceConnection(ball->GetOutputPort());
   of.ball_mapper->ScalingOff();

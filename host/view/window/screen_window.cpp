@@ -5,7 +5,6 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkMatrix4x4.h>
-#include <vtkTextProperty.h>
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +68,8 @@ ScreenWindow::ScreenWindow(const ViewOptions& options, const ScreenKeys& keys)
   key->SetCallback([](vtkObject*, unsigned long, void* window, void*) {
     auto* const self = static_cast<ScreenWindow*>(window);
     const std::string name = self->events_->GetKeySym() ? self->events_->GetKeySym() : "";
-    if (name == "q" || name == "Escape") self->is_over_ = true;
+    const bool is_closing = name == "q" && self->events_->GetControlKey() != 0;
+    if (is_closing || name == "Escape") self->is_over_ = true;
   });
   events_->AddObserver(vtkCommand::KeyPressEvent, key);
 }
@@ -246,6 +246,7 @@ void ScreenWindow::show_state(const FrameMessage& message) {
   volumes_->set_look(look);
   if (!message.look.curve.empty()) volumes_->set_curve(message.look.curve);
   volumes_->set_window(message.look.level, message.look.width);
+  volumes_->set_slices(message.look.slices);
   cut_.set(message.look.cut, renderer_);
 }
 

@@ -12,7 +12,6 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
-#include <vtkTextActor.h>
 
 #include "host/view/link/screen_link.hpp"
 #include "host/view/live_volumes.hpp"
@@ -51,7 +50,6 @@ class ScreenWindow {
   vtkNew<vtkRenderWindow> window_;
   vtkNew<vtkRenderWindowInteractor> events_;
   vtkNew<vtkLight> light_;
-  vtkNew<vtkTextActor> text_;
 
   std::uint64_t session_ = 0;
   Screen screen_;

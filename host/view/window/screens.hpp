@@ -20,6 +20,7 @@ struct MasterView {
   VolumeLook volumes = VolumeLook::rays;
   bool shows_contacts = true;
   double level = 0, width = 1;  ///< as VolumeActors::set_window()
+  SliceLook slices;
   std::optional<Cut> cut;
   std::vector<ColorPoint> curve;  ///< as VolumeActors::set_curve(); empty: nobody changed it
 };

@@ -194,7 +194,7 @@ void MasterScreens::set_view(const MasterView& view) {
   const RoomPlace place =
       place_of_camera(impl_->room(), view.camera.eye, view.camera.target, view.camera.up);
   impl_->server().set_view(place, {static_cast<std::uint8_t>(view.volumes), view.shows_contacts,
-                                   view.level, view.width, view.cut, view.curve});
+                                   view.level, view.width, view.slices, view.cut, view.curve});
 }
 
 std::string MasterScreens::status() const {
@@ -203,6 +203,10 @@ std::string MasterScreens::status() const {
   text << counts.screens << " of " << impl_->room().screens.size() << " screens   "
        << static_cast<double>(counts.frame_bytes) / 1000 << " kB a frame   " << counts.frames
        << " frames";
+  if (counts.ready_frames > 0) {
+    const double each = counts.ready_seconds / static_cast<double>(counts.ready_frames);
+    text << "   all ready after " << std::lround(1e6 * each) << " us";
+  }
   if (counts.late > 0) text << "   " << counts.late << " late";
   if (counts.lost > 0) text << "   " << counts.lost << " lost";
   if (counts.malformed > 0) text << "   " << counts.malformed << " bad messages";

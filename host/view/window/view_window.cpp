@@ -4,47 +4,36 @@
 
 #include <fmt/format.h>
 #include <vtkCallbackCommand.h>
-#include <vtkCamera.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
-#include <numbers>
 #include <string_view>
 #include <tetwarp/io.hpp>
 #include <thread>
 
 #include "host/base/point3.hpp"
-#include "host/view/window/overlay_text.hpp"
+#include "host/view/overlay_text.hpp"
+#include "host/view/window/window_camera.hpp"
 #include "host/view/window/window_picture.hpp"
 
 namespace tetwarp::view {
 namespace {
 constexpr unsigned long timer_interval = 15;  // [ms]
-// Ray casting is given up after so many pictures one after the other that took longer than this.
-constexpr double slow_seconds = 1.0;
-constexpr int most_slow_frames = 5;
-constexpr double resting_seconds = 0.4;  // until rays become finer
-constexpr double cut_step = 0.02;        // of the size of the scene
-constexpr double window_pixels = 400;    // by which the mouse moves the window by its width
-
-/// The next number that no file in the working folder has.
-std::string free_name(const std::string& ending) {
-  std::string path;
-  int number = 0;
-  do {
-    path = fmt::format("view_{:04}{}", number++, ending);
-  } while (std::filesystem::exists(path));
-  return path;
-}
+constexpr double resting_seconds = 0.4;       // until rays become finer
+constexpr double cut_step = 0.02;             // of the size of the scene
+constexpr double window_pixels = 400;         // by which the mouse moves the window by its width
 }  // namespace
 
 ViewWindow::ViewWindow(const ViewScene& scene,
                        LiveSimulation& simulation,
                        const ViewOptions& options,
                        MasterScreens* screens)
-    : scene_(scene), simulation_(simulation), options_(options), screens_(screens) {
+    : scene_(scene),
+      simulation_(simulation),
+      options_(options),
+      screens_(screens),
+      quantity_(quantity_of(options.colors)) {
   set_up_window();
   set_up_mouse();
   if (!options_.devices.empty()) set_up_devices();
@@ -54,11 +43,7 @@ void ViewWindow::set_up_window() {
   renderer_->SetBackground(0.93, 0.94, 0.96);
   renderer_->SetBackground2(0.72, 0.77, 0.84);
   renderer_->GradientBackgroundOn();
-  vtkCamera* const camera = renderer_->GetActiveCamera();
-  camera->SetPosition(scene_.camera.eye.data());
-  camera->SetFocalPoint(scene_.camera.target.data());
-  camera->SetViewUp(scene_.camera.up.data());
-  camera->SetViewAngle(scene_.camera.angle * 180 / std::numbers::pi);
+  set_camera(scene_.camera, renderer_->GetActiveCamera());
   window_->SetMultiSamples(0);
   window_->SetSize(static_cast<int>(options_.width), static_cast<int>(options_.height));
   window_->SetWindowName("tetwarp");
@@ -68,7 +53,7 @@ void ViewWindow::set_up_window() {
 
 void ViewWindow::set_up_mouse() {
   MouseActions actions;
-  actions.grab = [this](int x, int y) { return grab(x, y); };
+  actions.grab = [this](int x, int y) { return may_grab_ && grab(x, y); };
   actions.pull = [this](int x, int y) { pull(x, y); };
   actions.release = [this] { simulation_.give({.kind = OrderKind::release}); };
   actions.turn_window = [this](int x, int y) { return turn_window(x, y); };
@@ -80,7 +65,8 @@ void ViewWindow::set_up_mouse() {
     volumes_->set_curve(curve_->editor()->curve());
     draw();
   };
-  actions.press = [this](const std::string& key) { press(key); };
+  actions.move_slice = [this](int x, int y, int steps) { return move_slice(x, y, steps); };
+  actions.press = [this](const PressedKey& key) { press(key); };
   style_->set_actions(std::move(actions));
   events_->SetInteractorStyle(style_);
 }
@@ -90,7 +76,7 @@ void ViewWindow::set_up_devices() {
   actions.grab = [this](Point3& point) {
     const int* const size = window_->GetSize();
     if (!grab(size[0] / 2, size[1] / 2)) return false;
-    point = world_of(size[0] / 2.0, size[1] / 2.0, grab_depth_);
+    point = pointer_.world_of(size[0] / 2, size[1] / 2, grab_depth_);
     return true;
   };
   actions.pull = [this](const Point3& target) {
@@ -131,7 +117,10 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   tell_screens();
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
   if (!options_.film.empty()) film_.require(options_.film);
+  const Stopwatch since_first;
+  const std::int64_t first_count = picture_count_;
   events_->Start();
+  picture_rate_ = static_cast<double>(picture_count_ - first_count) / since_first.seconds();
   tell_screens();  // what the last events have changed
   attempt([this] { film_.end(); });
 }
@@ -139,16 +128,14 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
 /// The screens follow the camera and what is shown.
 void ViewWindow::tell_screens() {
   if (screens_ == nullptr) return;
-  vtkCamera* const camera = renderer_->GetActiveCamera();
   MasterView view;
-  camera->GetPosition(view.camera.eye.data());
-  camera->GetFocalPoint(view.camera.target.data());
-  camera->GetViewUp(view.camera.up.data());
+  view.camera = camera_of(renderer_->GetActiveCamera());
   view.volumes = look_;
+  view.slices = slices_;
   view.shows_contacts = shows_contacts_;
   view.level = level_;
   view.width = width_;
-  view.cut = cut_;
+  view.cut = cut_plane_.cut();
   if (curve_) view.curve = curve_->editor()->edited();
   screens_->set_view(view);
 }
@@ -207,7 +194,9 @@ void ViewWindow::note_picture(double seconds) {
   if (look_ != VolumeLook::rays || scene_.volumes.empty()) return;
   rays_.drew(seconds);
   volumes_->set_rays(rays_.moving());
-  fall_back(seconds);
+  if (!rays_.gives_up()) return;
+  set_look(VolumeLook::slices);
+  note(fmt::format("slices, as rays take {:.1f} s a picture; v v: rays", seconds));
 }
 
 /// Once, when nothing has moved for a while.
@@ -232,14 +221,6 @@ void ViewWindow::draw() {
   delay_.drawn(simulation_.frames().front().input);
 }
 
-/// Shows slices where rays take too long.
-void ViewWindow::fall_back(double seconds) {
-  slow_frames_ = seconds > slow_seconds ? slow_frames_ + 1 : 0;
-  if (slow_frames_ < most_slow_frames) return;
-  set_look(VolumeLook::slices);
-  note(fmt::format("slices, as rays take {:.1f} s a picture; v v: rays", seconds));
-}
-
 void ViewWindow::note(const std::string& text) {
   note_ = text;
 }
@@ -252,12 +233,11 @@ std::string ViewWindow::overlay() {
   return text;
 }
 
-/// Of the next quantity.
+/// Of the next quantity after the one that was asked for last, which no frame may have yet.
 void ViewWindow::color_surfaces() {
   constexpr int quantities = static_cast<int>(SurfaceQuantity::adhesion) + 1;
-  const int now = static_cast<int>(simulation_.frames().front().quantity);
-  const auto next = static_cast<SurfaceQuantity>((now + 1) % quantities);
-  simulation_.give({.kind = OrderKind::values, .quantity = next});
+  quantity_ = static_cast<SurfaceQuantity>((static_cast<int>(quantity_) + 1) % quantities);
+  simulation_.give({.kind = OrderKind::values, .quantity = quantity_});
 }
 
 void ViewWindow::turn_film() {
@@ -280,7 +260,7 @@ void ViewWindow::attempt(const std::function<void()>& action) {
 
 void ViewWindow::set_look(VolumeLook look) {
   look_ = look;
-  slow_frames_ = 0;
+  rays_.try_again();
   volumes_->set_look(look);
   for (const VolumeBody& volume : scene_.volumes) {
     actors_->show_body(volume.body, look == VolumeLook::surfaces);
@@ -290,88 +270,103 @@ void ViewWindow::set_look(VolumeLook look) {
                                 : OrderKind::volumes_on});
 }
 
-void ViewWindow::press(const std::string& key) {
+void ViewWindow::press(const PressedKey& key) {
   note_.clear();
+  vtkCamera* const camera = renderer_->GetActiveCamera();
+  const bool is_closing = key.name == "q" && key.has_control;
+  if (is_closing || (key.name == "Escape" && !let_go())) return events_->TerminateApp();
+  if (const auto moved = camera_after(key, camera_of(camera), scene_.camera)) {
+    set_camera(*moved, camera);
+  } else if (!key.has_control) {
+    act(key.name);
+  }
+  draw();
+}
+
+void ViewWindow::act(const std::string& key) {
   if (key == "space") simulation_.give({.kind = OrderKind::pause});
-  if (key == "s") simulation_.give({.kind = OrderKind::step});
-  if (key == "r") simulation_.give({.kind = OrderKind::restart});
+  if (key == "period") simulation_.give({.kind = OrderKind::step});
+  if (key == "BackSpace") simulation_.give({.kind = OrderKind::restart});
+  if (key == "g") turn_grabbing();
   if (key == "i") probe();
-  if (key == "x") turn_cut();
-  if (key == "comma" || key == "period") move_cut(key == "comma" ? cut_step : -cut_step);
+  if (key == "x") cut_plane_.turn(scene_.center, renderer_);
+  if (key == "Next") cut_plane_.move(cut_step * scene_.size, renderer_);
+  if (key == "Prior") cut_plane_.move(-cut_step * scene_.size, renderer_);
   if (key == "c") actors_->show_contacts(shows_contacts_ = !shows_contacts_);
   if (key == "v") {
     set_look(look_ == VolumeLook::rays     ? VolumeLook::slices
              : look_ == VolumeLook::slices ? VolumeLook::surfaces
                                            : VolumeLook::rays);
   }
+  if (key == "n") {
+    choose_next(slices_);
+    volumes_->set_slices(slices_);
+  }
   if (key == "h") texts_.turn_help();
   if (key == "k") color_surfaces();
   if (key == "m") turn_film();
   if (key == "o" && curve_) curve_->turn();
-  if (key == "p") {
-    attempt([this, path = free_name(".png")] {
-      save_picture(path);
-      note("wrote " + path);
-    });
-  }
-  if (key == "q" || key == "Escape") return events_->TerminateApp();
-  draw();
+  if (key == "F12") save_next_picture();
 }
 
-Point3 ViewWindow::world_of(double x, double y, double depth) {
-  renderer_->SetDisplayPoint(x, y, depth);
-  renderer_->DisplayToWorld();
-  const double* const world = renderer_->GetWorldPoint();
-  return {world[0] / world[3], world[1] / world[3], world[2] / world[3]};
+void ViewWindow::save_next_picture() {
+  attempt([this, path = free_name(".png")] {
+    save_picture(path);
+    note("wrote " + path);
+  });
 }
 
-/// @param ray  out, from the eye
-std::optional<Pick> ViewWindow::pick_at(int x, int y, Point3& ray) {
-  const Point3 near = world_of(x, y, 0);
-  ray = minus(world_of(x, y, 1), near);
-  return pick(simulation_.frames().front().points, scene_.triangles, near, ray, cut_);
+/// @returns whether mouse or devices held anything
+bool ViewWindow::let_go() {
+  const bool by_mouse = style_->let_go();
+  const bool by_device = devices_ && devices_->let_go();
+  return by_mouse || by_device;
+}
+
+void ViewWindow::turn_grabbing() {
+  may_grab_ = !may_grab_;
+  note(may_grab_ ? "left pulls bodies" : "left turns the camera, also on bodies; g: pulls");
+}
+
+std::optional<Pick> ViewWindow::pick_at(const EyeRay& ray) {
+  return pick(simulation_.frames().front().points, scene_.triangles, ray.origin, ray.direction,
+              cut_plane_.cut());
 }
 
 /// Notes what is under the pointer.
 void ViewWindow::probe() {
   const int* const place = events_->GetEventPosition();
-  Point3 ray{};
-  const auto found = pick_at(place[0], place[1], ray);
+  const EyeRay ray = pointer_.ray_at(place[0], place[1]);
+  const auto found = pick_at(ray);
   if (!found) return note("nothing is there");
-  note(probe_text(scene_, simulation_.frames().front(), *found, ray));
+  note(probe_text(scene_, simulation_.frames().front(), *found, ray.direction));
 }
 
-/// Hides what is before the middle of the scene, or shows all again.
-void ViewWindow::turn_cut() {
-  if (cut_) {
-    cut_.reset();
-  } else {
-    Point3 away{};
-    renderer_->GetActiveCamera()->GetViewPlaneNormal(away.data());
-    cut_ = Cut{scene_.center, unit(away)};
+bool ViewWindow::move_slice(int x, int y, int steps) {
+  if (look_ != VolumeLook::slices) return false;
+  const EyeRay ray = pointer_.ray_at(x, y);
+  std::optional<MetSlice> first;
+  for (const VolumeFrame& volume : simulation_.frames().front().volumes) {
+    const auto met = slice_at(volume.grid, slices_, ray.origin, ray.direction);
+    if (met && (!first || met->distance < first->distance)) first = met;
   }
-  cut_plane_.set(cut_, renderer_);
-}
-
-void ViewWindow::move_cut(double share) {
-  if (!cut_) return;
-  cut_->point = plus(cut_->point, times(share * scene_.size, cut_->normal));
-  cut_plane_.set(cut_, renderer_);
+  if (!first) return true;
+  view::move_slice(slices_, first->axis, steps);
+  volumes_->set_slices(slices_);
+  draw();
+  return true;
 }
 
 bool ViewWindow::grab(int x, int y) {
-  Point3 ray{};
-  const auto found = pick_at(x, y, ray);
+  const auto found = pick_at(pointer_.ray_at(x, y));
   if (!found) return false;
-  renderer_->SetWorldPoint(found->point[0], found->point[1], found->point[2], 1);
-  renderer_->WorldToDisplay();
-  grab_depth_ = renderer_->GetDisplayPoint()[2];
+  grab_depth_ = pointer_.depth_of(found->point);
   simulation_.give({.kind = OrderKind::grab, .body = found->body, .point = found->point});
   return true;
 }
 
 void ViewWindow::pull(int x, int y) {
-  simulation_.give({.kind = OrderKind::pull, .point = world_of(x, y, grab_depth_)});
+  simulation_.give({.kind = OrderKind::pull, .point = pointer_.world_of(x, y, grab_depth_)});
 }
 
 bool ViewWindow::turn_window(int x, int y) {

@@ -20,6 +20,7 @@
 #include "host/view/window/cut_plane.hpp"
 #include "host/view/window/device_hand.hpp"
 #include "host/view/window/mouse_style.hpp"
+#include "host/view/window/pointer.hpp"
 #include "host/view/window/scene_actors.hpp"
 #include "host/view/window/screens.hpp"
 #include "host/view/window/value_legend.hpp"
@@ -47,6 +48,8 @@ class ViewWindow {
   /// Writes what is shown. @pre has_picture() @throws IoError
   void save_picture(const std::string& path);
   std::int64_t picture_count() const { return picture_count_; }
+  /// Pictures a second of wall time, from the first one on.
+  double picture_rate() const { return picture_rate_; }
   const InputDelay& delay() const { return delay_; }
   /// What ended the simulation, or empty.
   std::string failure();
@@ -63,22 +66,23 @@ class ViewWindow {
   void note_picture(double seconds);
   void refine();
   void tell_screens();
-  void press(const std::string& key);
-  std::optional<Pick> pick_at(int x, int y, Point3& ray);
+  void press(const PressedKey& key);
+  void act(const std::string& key);
+  void save_next_picture();
+  bool let_go();
+  void turn_grabbing();
+  std::optional<Pick> pick_at(const EyeRay& ray);
   bool grab(int x, int y);
   void probe();
-  void turn_cut();
-  void move_cut(double share);
+  bool move_slice(int x, int y, int steps);
   void pull(int x, int y);
   bool turn_window(int x, int y);
   void set_look(VolumeLook look);
-  void fall_back(double seconds);
   void note(const std::string& text);
   std::string overlay();
   void color_surfaces();
   void turn_film();
   void attempt(const std::function<void()>& action);
-  Point3 world_of(double x, double y, double depth);
 
   const ViewScene& scene_;
   LiveSimulation& simulation_;
@@ -92,23 +96,26 @@ class ViewWindow {
   std::optional<SceneActors> actors_;
   std::optional<VolumeActors> volumes_;
   VolumeLook look_ = VolumeLook::rays;
+  SliceLook slices_;
+  SurfaceQuantity quantity_;
+  Pointer pointer_{renderer_};
   bool shows_contacts_ = true;
+  bool may_grab_ = true;
   bool is_refined_ = false;  ///< more finely drawn since nothing moves
   RayQuality rays_;
   Stopwatch drawing_;  ///< since a picture was begun
   Stopwatch resting_;  ///< since the last picture of something that moved
   std::int64_t picture_count_ = 0;
+  double picture_rate_ = 0;
   InputDelay delay_;
   double level_ = 0, width_ = 1;  ///< of the window of volumes
   double grab_depth_ = 0;         ///< of the point that is held, as on the display
-  int slow_frames_ = 0;           ///< drawn one after the other
   std::string note_;
   std::optional<ValueLegend> legend_;
   std::optional<CurvePanel> curve_;
   WindowFilm film_;
   std::optional<DeviceHand> devices_;
   CutPlane cut_plane_;
-  std::optional<Cut> cut_;
   const volatile std::sig_atomic_t* is_interrupted_ = nullptr;
   std::vector<Stopwatch> drawn_;  ///< since each picture of the last second
 };

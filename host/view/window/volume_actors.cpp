@@ -85,9 +85,8 @@ void VolumeActors::show(LiveFrame& frame) {
       drawn.image->Modified();
       space_rays(drawn);
       drawn.rays->GetProperty()->SetScalarOpacityUnitDistance(preset_length(grid));
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        drawn.slice_mappers[axis]->SetSliceNumber(static_cast<int>(grid.dims[axis] / 2));
-      }
+      drawn.grid = grid;
+      place_slices(drawn);
     }
     show_look(drawn);
   }
@@ -112,8 +111,24 @@ void VolumeActors::set_look(VolumeLook look) {
 
 void VolumeActors::show_look(Drawn& drawn) {
   drawn.rays->SetVisibility(drawn.has_samples && look_ == VolumeLook::rays);
-  for (auto& slice : drawn.slices) {
-    slice->SetVisibility(drawn.has_samples && look_ == VolumeLook::slices);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    drawn.slices[axis]->SetVisibility(drawn.has_samples && look_ == VolumeLook::slices &&
+                                      slices_.shows(axis));
+  }
+}
+
+void VolumeActors::set_slices(const SliceLook& slices) {
+  slices_ = slices;
+  for (Drawn& drawn : drawn_) {
+    if (drawn.has_samples) place_slices(drawn);
+    show_look(drawn);
+  }
+}
+
+void VolumeActors::place_slices(Drawn& drawn) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t number = slice_number(drawn.grid, axis, slices_.places[axis]);
+    drawn.slice_mappers[axis]->SetSliceNumber(static_cast<int>(number));
   }
 }
 

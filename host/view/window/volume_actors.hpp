@@ -19,6 +19,7 @@
 
 #include "host/view/live_frame.hpp"
 #include "host/view/ray_quality.hpp"
+#include "host/view/slice_look.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/volume_colors.hpp"
 
@@ -33,6 +34,7 @@ class VolumeActors {
   /// @param frame  its samples are drawn where they are, until the next call
   void show(LiveFrame& frame);
   void set_look(VolumeLook look);
+  void set_slices(const SliceLook& slices);
   void set_rays(const RaySpacing& spacing);
   /// Of the first volume. @pre there is one
   std::vector<ColorPoint> curve() const { return drawn_.front().colors.curve(); }
@@ -54,14 +56,17 @@ class VolumeActors {
     vtkNew<vtkLookupTable> gray;  ///< of slices
     vtkNew<vtkImageSliceMapper> slice_mappers[3];
     vtkNew<vtkImageSlice> slices[3];
+    Grid grid;
     bool has_samples = false;
   };
   void color(Drawn& drawn);
   void space_rays(Drawn& drawn);
   void show_look(Drawn& drawn);
+  void place_slices(Drawn& drawn);
 
   std::deque<Drawn> drawn_;  ///< [volumes]
   VolumeLook look_ = VolumeLook::rays;
+  SliceLook slices_;
   RaySpacing rays_;
 };
 

@@ -2,11 +2,13 @@
 /// Pixels of a window.
 #include "host/view/window/window_picture.hpp"
 
+#include <fmt/format.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkWindowToImageFilter.h>
 
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 
 namespace tetwarp::view {
@@ -15,6 +17,15 @@ bool is_software(vtkRenderWindow* window) {
   const std::string_view renderer = window->ReportCapabilities();
   return renderer.find("llvmpipe") != std::string_view::npos ||
          renderer.find("softpipe") != std::string_view::npos;
+}
+
+std::string free_name(const std::string& ending) {
+  std::string path;
+  int number = 0;
+  do {
+    path = fmt::format("view_{:04}{}", number++, ending);
+  } while (std::filesystem::exists(path));
+  return path;
 }
 
 Image drawn_picture_of(vtkRenderWindow* window) {

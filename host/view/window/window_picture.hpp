@@ -14,6 +14,9 @@ bool is_software(vtkRenderWindow* window);
 /// What a window has drawn last.
 Image drawn_picture_of(vtkRenderWindow* window);
 
+/// view_0000 or the next number that no file in the working folder has, with this ending.
+std::string free_name(const std::string& ending);
+
 /// Draws the window again and reads it.
 Image picture_of(vtkRenderWindow* window);
 

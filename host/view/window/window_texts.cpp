@@ -7,10 +7,14 @@
 namespace tetwarp::view {
 namespace {
 constexpr const char* help_text =
-    "left: pull the body, else turn   Shift+left: pan\nwheel: zoom   right: window of volumes\n"
-    "space pause   s step   r restart   c contacts   p picture   m film\n"
-    "v volume, slices, surfaces   i probe   x cut plane   , . move it\n"
-    "k colors of stress, gap, adhesion   o curve of volumes\nh help   q quit";
+    "left: pull the body, else turn   g: turn only   Shift+left: pan\n"
+    "wheel: zoom   Shift+wheel: move a slice   right: window of volumes\n"
+    "r view of the start   arrows turn   Shift+arrows pan   + - zoom\n"
+    "keypad 1 3 7 anterior, left, superior   0 the nearest\n"
+    "space pause   . step   Backspace restart   c contacts\n"
+    "v volume, slices, surfaces   n one slice alone   o curve of volumes\n"
+    "x cut plane   Page Up, Page Down move it   i probe   k colors\n"
+    "F12 picture   m film   h help   Escape let go, quit";
 
 void style_text(vtkTextActor* text, int size) {
   text->GetTextProperty()->SetFontSize(size);

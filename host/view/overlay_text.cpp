@@ -1,6 +1,6 @@
 /// @file overlay_text.cpp
 /// Numbers of a moment, and of a place.
-#include "host/view/window/overlay_text.hpp"
+#include "host/view/overlay_text.hpp"
 
 #include <fmt/format.h>
 
