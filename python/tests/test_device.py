@@ -13,7 +13,7 @@ import tetwarp
 
 USABLE = any(b["backend"] == "cuda" and b["usable"] for b in tetwarp.available_backends())
 EMULATED = any(b["device"] == "emulation" for b in tetwarp.available_backends())
-needs_emulation = pytest.mark.skipif(not EMULATED, reason="not the package of the emulated device")
+needs_emulation = pytest.mark.skipif(not EMULATED, reason="not on the emulated device, which the test python_device has")
 
 
 class DeviceArray:

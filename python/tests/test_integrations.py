@@ -121,7 +121,7 @@ def test_meshes_of_vtk_are_read(fill, scan):
         with_flat.InsertNextCell(kind, ids)  # points, edges, faces, also curved ones: left out
     assert np.array_equal(fill.mesh_of(with_flat)[1], mesh.cells)
     wrong = vtk_mesh(*mesh)
-    wrong.GetCellTypesArray().SetValue(1, 14)  # a pyramid
+    fill.WrapDataObject(wrong).CellTypes[1] = 14  # a pyramid
     with pytest.raises(ValueError, match=r"found cells of VTK's types \[10, 14\]"):
         fill.mesh_of(wrong)
 

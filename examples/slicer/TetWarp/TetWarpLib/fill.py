@@ -6,6 +6,7 @@ Positions are in RAS, the world of Slicer. Matrices are 4 x 4 arrays, from voxel
 
 import numpy as np
 import tetwarp
+from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
     VTK_HEXAHEDRON,
@@ -26,7 +27,7 @@ def mesh_of(grid):
     """Nodes and cells of a vtkUnstructuredGrid of tetrahedra or hexahedra; other cells of three
     dimensions are an error, cells of fewer are left out.
     """
-    kinds = vtk_to_numpy(grid.GetCellTypesArray())
+    kinds = np.asarray(WrapDataObject(grid).CellTypes)
     cells = grid.GetCells()
     offsets = vtk_to_numpy(cells.GetOffsetsArray())
     corners = vtk_to_numpy(cells.GetConnectivityArray())
