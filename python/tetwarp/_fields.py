@@ -14,7 +14,7 @@ from ._mesh import Cells
 from ._result import WarpResult
 from ._values import flag_of, number_of, warn
 from ._volume import Volume
-from ._warp import Warper
+from ._warper import Warper
 
 _CONVENTIONS = {"resampling": "displacement", "modeling": "forward"}
 
