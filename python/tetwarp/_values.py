@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 _MOST_AXES = 64  # of an array of NumPy
+_NUMBERS = {int, float, bool, complex}
 
 
 def shown(value: Any) -> str:
@@ -30,15 +31,15 @@ def is_masked(value: Any) -> bool:
     """Whether elements of an array, or of one in a list, are masked: NumPy would drop the mask."""
     if isinstance(value, np.ndarray):
         return np.ma.is_masked(value)
-    items = [value]
+    items = value if _is_list(type(value)) else ()
     for _ in range(_MOST_AXES):  # whole levels of lists at a time, which is quick for many numbers
         kinds = set(map(type, items))
-        lists = {kind for kind in kinds if _is_list(kind)}
+        if kinds <= _NUMBERS:
+            return False
         if any(issubclass(kind, np.ma.MaskedArray) for kind in kinds) and any(
                 isinstance(item, np.ma.MaskedArray) and np.ma.is_masked(item) for item in items):
             return True
-        if not lists:
-            return False
+        lists = {kind for kind in kinds if _is_list(kind)}
         inner = items if kinds == lists else [item for item in items if type(item) in lists]
         items = list(chain.from_iterable(inner))
     return False  # NumPy refuses it
