@@ -130,8 +130,10 @@ def test_a_grid_transform_has_the_displacements_of_all_voxels(fill, scan):
     volume, mesh, bent = scan
     transform = stand_in_grid_transform()
 
-    fill.fill_grid_transform(transform, tuple(reversed(volume.shape)), volume.affine,
-                             vtk_mesh(*mesh), bent, outside="falloff", falloff=30)
+    field = fill.fill_grid_transform(transform, tuple(reversed(volume.shape)), volume.affine,
+                                     vtk_mesh(*mesh), bent, outside="falloff", falloff=30)
+    assert np.shares_memory(fill.samples_of(transform.GetDisplacementGrid()), field.values)
+    del field  # VTK keeps its memory
 
     centers = volume.grid.points().reshape(-1, 3)
     places = np.array([transform.place_of(center) for center in centers])

@@ -86,7 +86,7 @@ def fill_grid_transform(transform, dimensions, ijk_to_ras, grid, deformed, **opt
     dimensions : i, j, k of its grid, at best those of the volume
     options : keywords of tetwarp.displacement_field, such as outside and falloff
 
-    Returns tetwarp.Field.
+    Returns tetwarp.Field, whose values are those of the transform.
     """
     volume_grid = tetwarp.Grid.from_affine(tuple(reversed(dimensions)), ijk_to_ras)
     field = tetwarp.displacement_field(*mesh_of(grid), deformed, reference=volume_grid, **options)
@@ -94,7 +94,7 @@ def fill_grid_transform(transform, dimensions, ijk_to_ras, grid, deformed, **opt
     displacements.SetDimensions(dimensions)
     displacements.SetSpacing(volume_grid.spacing)
     displacements.SetOrigin(volume_grid.origin)
-    vectors = numpy_to_vtk(field.values.reshape(-1, 3), deep=True)
+    vectors = numpy_to_vtk(field.values.reshape(-1, 3))  # which VTK keeps
     vectors.SetName("displacement")
     displacements.GetPointData().SetScalars(vectors)
     directions = vtkMatrix4x4()
