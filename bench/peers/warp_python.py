@@ -321,7 +321,7 @@ def version_of(module):
     if module == "plastimatch":
         return subprocess.check_output([module, "--version"], text=True).split()[-1]
     try:
-        return version(module)
+        return version(module).partition("+")[0]  # without the name of a build
     except PackageNotFoundError:
         return sys.modules[module.split(".")[0]].__version__
 
