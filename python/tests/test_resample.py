@@ -53,6 +53,8 @@ def test_a_field_resamples_as_the_warp_that_it_is_of(volume, mesh, twisted, fiel
     error = np.abs(resampled.array - result.volume)[field.mask]
     assert field.mask.mean() > 0.2 and error.max() < 1e-4 * np.ptp(volume.array)
     assert np.array_equal(as_volume.array, resampled.array)
+    one, three = (tetwarp.resample(volume, field, interpolator="cubic", threads=n) for n in (1, 3))
+    assert np.array_equal(one.array, three.array)
 
 
 def test_a_chain_moves_by_its_first_link_first(volume, field):
