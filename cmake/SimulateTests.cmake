@@ -224,7 +224,9 @@ if(NOT BUILD_SHARED_LIBS)
     tetwarp_discover(tetwarp_short_scene_tests io)
     if(TETWARP_LONG_TESTS)
       tetwarp_add_tests(tetwarp_scene_law_tests LIBRARIES tetwarp_io SOURCES
-        tests/simulate/laws/test_scene_laws.cpp)
+        tests/simulate/laws/test_scene_bonds.cpp
+        tests/simulate/laws/test_scene_laws.cpp
+        tests/simulate/laws/test_scene_torso.cpp)
       tetwarp_discover(tetwarp_scene_law_tests long)
     endif()
   endif()

@@ -4,12 +4,13 @@ how results converge with finer meshes and shorter steps.
     python3 bench/simulate/scenes.py build/release/tetwarp RESULTS.json [--only NAME]... [--steps N]
 
 measures the rows whose names begin with a NAME, or all, puts them into RESULTS.json, whose other rows are
-kept, and prints all as tables. Runs take one thread; times are processor times of the whole command, so
-that other work on the machine changes them little. --steps ends runs early. Needs h5py.
+kept, and prints all as tables. Runs take one thread, that of the whole candy two; times are processor times
+of the whole command, so that other work on the machine changes them little. --steps ends runs early. Needs h5py.
 """
 import argparse
 import datetime
 import json
+import math
 import os
 import platform
 import resource
@@ -24,8 +25,10 @@ COARSE_CANDY = [('"triangles": 5000', '"triangles": 800'), ('"triangles": 1280',
                 ('"triangles": 320', '"triangles": 80'), ('"cells": [12, 12, 4]', '"cells": [6, 6, 2]'),
                 ('"tets": 475', '"tets": 90')]
 PAPER = {"candy": "151, 531", "candy without adhesion": "97, 330", "shoulder": "65, 153"}
+PAPERS_LAWS = ["--law", "pyramid", "--rule", "restrictive"]
 STAGES = ("forces", "assembly", "linear", "detection", "contact", "update")
 FREE = ["--no-adhesion"]
+STEEP = 9.81 * math.sin(math.radians(20))  # m/s^2
 
 
 def text_of(tool, name):
@@ -69,6 +72,36 @@ def rolling(text, time_step, triangles):
     return scene
 
 
+def rolling_ball(time_step, points, tets):
+    """An elastic ball of 8 cm with E = 1e6 Pa on a slope of 20 degrees, for 0.5 s."""
+    body = {"name": "ball", "kind": "fem", "shape": {"type": "sphere", "radius": 0.04}, "lattice": {"tets": tets},
+            "surface": {"triangles": 2 * points}, "material": {"E": 1e6, "nu": 0.4, "density": 1000},
+            "pose": {"position": [0, 0, 0.0402]}}
+    return {"tetwarp_scene": 1, "time_step": time_step, "duration": 0.5, "thickness": 1e-4,
+            "gravity": [STEEP, 0, -9.81 * math.cos(math.radians(20))], "contact": {"friction": 0.6},
+            "solver": {"contact_tolerance": 1e-6, "linear_tolerance": 1e-8}, "bodies": [body],
+            "obstacles": [{"name": "floor", "plane": {"normal": [0, 0, 1]}}]}
+
+
+def finely_covered(text, factor):
+    """Surfaces of more triangles on the same lattices; of rigid bodies at most twice as many, as the humerus and
+    the tendon of the biceps would intersect."""
+    scene = json.loads(text)
+    for body in scene["bodies"]:
+        if "triangles" in body.get("surface", {}):
+            body["surface"]["triangles"] *= factor if body["kind"] == "fem" else min(factor, 2)
+    return scene
+
+
+def pushing_counts(path):
+    """Numbers of contacts that carry an impulse, of each output."""
+    with h5py.File(path, "r") as file:
+        group = file["VTKHDF"]
+        carries = np.linalg.norm(group["PointData/impulse"][()], axis=1) > 0
+        starts = group["Steps/PointOffsets"][()]
+    return np.array([part.sum() for part in np.split(carries, starts[1:])])
+
+
 def run(tool, scene, options, steps):
     """The columns of the series by name, the report, and the processor time [s]."""
     with tempfile.TemporaryDirectory() as folder:
@@ -76,9 +109,10 @@ def run(tool, scene, options, steps):
         with open(path, "w", encoding="utf-8") as file:
             json.dump(scene, file)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        words = [tool, "simulate", path, "-o", os.path.join(folder, "out"), "--quiet", "--threads", "1"]
-        words += options + (["--steps", str(steps)] if steps else [])
-        done = subprocess.run(words, capture_output=True, text=True)
+        words = [tool, "simulate", path, "-o", "out", "--quiet", "--contacts", "out/contacts.vtkhdf"]
+        words += options + ([] if "--threads" in options else ["--threads", "1"])
+        words += ["--steps", str(steps)] if steps else []
+        done = subprocess.run(words, capture_output=True, text=True, cwd=folder)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if done.returncode not in (0, 3):  # 3: a step stayed above its tolerance
             raise SystemExit(done.stderr)
@@ -86,6 +120,7 @@ def run(tool, scene, options, steps):
         with h5py.File(os.path.join(folder, "out", "series.h5"), "r") as file:
             file.visititems(lambda name, item: columns.update({name: item[()]}) if isinstance(item, h5py.Dataset)
                             else None)
+        columns["pushing"] = pushing_counts(os.path.join(folder, "out", "contacts.vtkhdf"))
         with open(os.path.join(folder, "out", "report.json"), encoding="utf-8") as file:
             report = json.load(file)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -102,10 +137,13 @@ def step_row(columns, report, seconds):
     return {"steps": steps, "tetrahedra": sum(body["tetrahedra"] for body in report["bodies"].values()),
             "triangles": sum(body["triangles"] for body in report["bodies"].values()),
             "contacts": [float(columns["contacts"].mean()), int(columns["contacts"].max())],
+            "pushing": [float(columns["pushing"].mean()), int(columns["pushing"].max())],
             "ms": 1e3 * seconds * share / steps,
             "shares": {stage: float(columns[f"seconds/{stage}"].sum() / whole) for stage in STAGES},
             "energy": [float(total[0]), float(total[-1]), float(np.diff(total).max())],
             "passes": [float(columns["contact_passes"][1:].mean()), int(columns["contact_passes"].max())],
+            "sweeps": float(columns["sweeps"].mean()), "outer": float(columns["outer_iterations"].mean()),
+            "divided": int((columns["substeps"] > 1).sum()),
             "clamped": int((columns["clamped_islands"] > 0).sum()),
             "unconverged": report["unconverged_steps"]}
 
@@ -148,6 +186,15 @@ def roll_row(columns, report, seconds):
     return row
 
 
+def steep_row(columns, report, seconds):
+    """The same on the steep slope, from 0.1 to 0.5 s."""
+    row = step_row(columns, report, seconds)
+    early = np.searchsorted(columns["time"], 0.1)
+    gain = columns["bodies/ball/velocity"][-1, 0] - columns["bodies/ball/velocity"][early, 0]
+    row["acceleration"] = float(gain / (columns["time"][-1] - columns["time"][early]) / (5 / 7 * STEEP))
+    return row
+
+
 def cases(tool):
     """Name of a row, its scene, options and what is kept of it."""
     text = {name: text_of(tool, name) for name in
@@ -155,6 +202,8 @@ def cases(tool):
              "candy", "shoulder")}
     for name in ("cantilever", "chain", "sheet", "top", "carps", "torso", "oranges", "peel", "shoulder"):
         yield f"scene/{name}", json.loads(text[name]), [], step_row
+    for factor in (2, 4):
+        yield f"scene/shoulder, triangles x {factor}", finely_covered(text["shoulder"], factor), [], step_row
     for name in ("cloth", "cloth_peels", "mouth"):
         yield f"scene/{name}", json.loads(text[name]), [], bond_row
         yield f"scene/{name} without adhesion", json.loads(text[name]), FREE, bond_row
@@ -162,11 +211,18 @@ def cases(tool):
     candy["duration"] = 4
     yield "scene/candy", candy, [], bond_row
     yield "scene/candy without adhesion", candy, FREE, bond_row
+    for name, scene in (("candy", candy), ("mouth", json.loads(text["mouth"]))):
+        yield f"scene/{name} by the paper's laws", scene, PAPERS_LAWS, bond_row
+        yield f"scene/{name} by the paper's laws without adhesion", scene, PAPERS_LAWS + FREE, bond_row
+    whole = json.loads(text["candy"])
+    whole["output"] = {"rate": 5}
+    yield "scene/candy whole", whole, ["--threads", "2"], bond_row
+    yield "scene/candy whole without adhesion", whole, FREE + ["--threads", "2"], bond_row
     for name, steps in (("torso", 100), ("oranges", 50), ("carps", 10)):
         options = ["--warp", "--intensity", "density", "--outputs", "mask", "--steps", str(steps)]
         yield f"volumes/{name}", json.loads(text[name]), options, warp_row
     # The lips of coarser lattices cross.
-    for name, factors in (("cloth", (0.5, 1, 2)), ("mouth", (1, 4 / 3))):
+    for name, factors in (("cloth", (0.5, 1, 2)), ("mouth", (1, 4 / 3, 5 / 3, 2))):
         for factor in factors:
             yield f"finer/{name} x {factor:.3g}", refined(json.loads(text[name]), factor), [], bond_row
     for factor in (1, 4 / 3, 5 / 3, 2):
@@ -174,18 +230,24 @@ def cases(tool):
     for time_step, triangles in ((4e-3, 3200), (2e-3, 3200), (1e-3, 3200), (2e-3, 800), (2e-3, 12800), (5e-4, 12800)):
         yield (f"roll/{1e3 * time_step:g} ms, {triangles // 2} points", rolling(text["oranges"], time_step, triangles), [],
                roll_row)
+    for time_step, points, tets in ((2e-3, 400, 232), (2e-3, 1600, 232), (2e-3, 6400, 232), (5e-4, 6400, 232),
+                                    (5e-4, 6400, 1800)):
+        yield (f"steep/{1e3 * time_step:g} ms, {points} points, {tets} tetrahedra",
+               rolling_ball(time_step, points, tets), [], steep_row)
 
 
 def print_tables(rows):
-    print("| scene | steps | tetrahedra | triangles | contacts, mean and most | the paper | ms | linear, contact, detection [%] "
-          "| energy at start and end, largest gain [J] | passes, mean and most | steps with stopped groups, above tolerance |")
-    print("|---" * 11 + "|")
+    print("| scene | steps | tetrahedra | triangles | contacts, mean and most | that carry an impulse (outputs) | the paper | ms "
+          "| linear, contact, detection [%] | energy at start and end, largest gain [J] | passes, mean and most "
+          "| steps with stopped groups, above tolerance |")
+    print("|---" * 12 + "|")
     for name, row in rows.items():
         if name.startswith("scene/"):
             mean, most = row["contacts"]
+            pushing = "" if most == 0 or "pushing" not in row else f"{row['pushing'][0]:.0f}, {row['pushing'][1]}"
             shares = ", ".join(f"{100 * row['shares'][stage]:.0f}" for stage in ("linear", "contact", "detection"))
             energy = ", ".join(f"{number:.3g}" for number in row["energy"])
-            print(f"| {name[6:]} | {row['steps']} | {row['tetrahedra']} | {row['triangles']} | {mean:.0f}, {most} "
+            print(f"| {name[6:]} | {row['steps']} | {row['tetrahedra']} | {row['triangles']} | {mean:.0f}, {most} | {pushing} "
                   f"| {PAPER.get(name[6:], '')} | {row['ms']:.2g} | {shares} | {energy} "
                   f"| {row['passes'][0]:.1f}, {row['passes'][1]} | {row['clamped']}, {row['unconverged']} |")
     print("\n| volumes | frames | a step [ms] | warps of a frame [ms] | frames a second |\n|---|---|---|---|---|")
@@ -208,6 +270,10 @@ def print_tables(rows):
     for name, row in rows.items():
         if name.startswith("roll/"):
             print(f"| {name[5:]} | {row['acceleration']:.3f} | {row['clamped']} | {row['ms']:.2g} |")
+    print("\n| time step, points, tetrahedra | acceleration / (5/7 g sin) | ms |\n|---|---|---|")
+    for name, row in rows.items():
+        if name.startswith("steep/"):
+            print(f"| {name[6:]} | {row['acceleration']:.3f} | {row['ms']:.2g} |")
 
 
 def processor():

@@ -16,6 +16,7 @@ class Block:
     lines: list = field(default_factory=list)
     not_run: str = ""  # the reason in a comment `<!-- not run: reason -->` above it
     needs: str = ""  # programs or modules in a comment `<!-- needs: name,name -->` above it
+    steps: str = ""  # of its simulations in a test, in a comment `<!-- steps: 2 -->` above it
 
     @property
     def text(self):
@@ -63,6 +64,7 @@ def read_page(root, path):
                 page.errors.append(f"{number}: a block of '{fence[1]}', expected {languages}")
             block.not_run = (re.match(r"<!-- not run: (.*\S) -->$", comment) or ["", ""])[1]
             block.needs = (re.match(r"<!-- needs: (\S+) -->$", comment) or ["", ""])[1]
+            block.steps = (re.match(r"<!-- steps: (\d+) -->$", comment) or ["", ""])[1]
             page.blocks.append(block)
         elif was_blank and line.startswith("    ") and line.strip()[:1] not in "-*0123456789":
             page.errors.append(f"{number}: an indented block; fence it and name its language")

@@ -107,6 +107,15 @@ def run_block(words, folder, environment, tries):
     return f"more than {SECONDS / tries:.0f} s"
 
 
+def shortened(block):
+    """The text of a block with the number of steps of its simulations in a test; 0: they only print their scenes,
+    after their options have been checked."""
+    if not block.steps:
+        return block.text
+    limit = "--print" if block.steps == "0" else f"--steps {block.steps}"
+    return re.sub(r" --steps \d+", "", block.text).replace("tetwarp simulate", f"tetwarp simulate {limit}")
+
+
 def imports(python, name, environment):
     """Whether an interpreter can import a module."""
     words = [python, "-c", f"import {name}"]
@@ -166,7 +175,7 @@ class Runner:
 
     def run_one(self, page, block, folder):
         if block.language == "sh":
-            words = ["bash", "-euo", "pipefail", "-c", block.text]
+            words = ["bash", "-euo", "pipefail", "-c", shortened(block)]
             if block.needs == "mpirun":  # Open MPI has leaks
                 environment = self.environment | {"ASAN_OPTIONS": "detect_leaks=0"}
                 with tempfile.TemporaryDirectory(prefix="tetwarp-mpi-") as sockets:

@@ -22,6 +22,16 @@ ContactKey key_of(std::int32_t body_a,
              : ContactKey{body_b, feature_b, body_a, feature_a};
 }
 
+/// Of the normals of a touch of a vertex and of a record of the same vertex and body.
+double cosine_between(const PairTouch& touch, const ContactRecord& record) {
+  const double sign = record.key.feature_a == touch.a ? 1 : -1;
+  return sign * dot(record.normal_world, point_of(touch.normal));
+}
+
+bool is_bonded(const ContactRecord& record) {
+  return record.intensity > 0 && record.area > 0;
+}
+
 }  // namespace
 
 PairContacts::NamedTouch PairContacts::named(const PairTouch& touch,
@@ -61,13 +71,23 @@ PairContacts::VertexRecord* PairContacts::nearest(const PairTouch& touch,
     if (of.is_taken) continue;
     const ContactRecord& record = records[of.record];
     if (record.normal_world == Point3{0, 0, 0}) return &of;
-    const double sign = record.key.feature_a == touch.a ? 1 : -1;
-    const double cosine = sign * dot(record.normal_world, point_of(touch.normal));
+    const double cosine = cosine_between(touch, record);
     if (cosine <= closest) continue;
     closest = cosine;
     best = &of;
   }
   return best;
+}
+
+/// Whether a vertex has a bond with the body on a part that faces almost the same way: that has the
+/// area, be it the nearer part or not.
+bool PairContacts::is_left_to_bond(const PairTouch& touch,
+                                   std::span<const VertexRecord> own,
+                                   std::span<const ContactRecord> records) {
+  return std::ranges::any_of(own, [&](const VertexRecord& of) {
+    const ContactRecord& record = records[of.record];
+    return is_bonded(record) && cosine_between(touch, record) >= cosine_45;
+  });
 }
 
 /// Lists the records of contacts of vertices.
@@ -135,14 +155,14 @@ void PairContacts::name_vertex(std::span<const ChosenTouch> touches,
   std::int32_t free = 0;
   for (std::size_t t = group.begin; t < group.end; ++t) {
     const PairTouch& touch = touches[t].touch;
-    double area = touches[t].area;
+    double area = is_left_to_bond(touch, own, records) ? 0 : touches[t].area;
     std::int32_t slot = 0;
     if (VertexRecord* const known = nearest(touch, own, records)) {
       known->is_taken = true;
       slot = known->slot;
       // The area of a bonded contact stays the same while the surfaces turn away from each other.
       const ContactRecord& record = records[known->record];
-      if (record.intensity > 0) area = std::max(area, record.area);
+      if (is_bonded(record)) area = std::max(touches[t].area, record.area);
     } else {
       for (--free; used != own.end() && used->slot == free; ++used) --free;
       slot = free;

@@ -74,6 +74,9 @@ class PairContacts {
   void name_vertex(std::span<const ChosenTouch> touches,
                    const Group& group,
                    std::span<const ContactRecord> records);
+  static bool is_left_to_bond(const PairTouch& touch,
+                              std::span<const VertexRecord> own,
+                              std::span<const ContactRecord> records);
   static NamedTouch named(const PairTouch& touch,
                           std::int32_t feature_a,
                           std::int32_t feature_b,

@@ -76,10 +76,13 @@ TEST(Cloth, LiesOnAFloorBetweenTwoHalvesOfACatenary) {
   EXPECT_NEAR(fine.floor_force / (0.05 * earth * flat), 1, 0.05);
 }
 
-/// Of the acceleration 5/7 g sin of a rigid ball: what a ball of 232 tetrahedra reaches that
+/// Of the acceleration 5/7 g sin of a rigid ball on a slope of 20 degrees: what a ball reaches that
 /// touches by the points of its surface.
-double rolling(std::int64_t points, double youngs_modulus, double time_step) {
-  Body ball = elastic_ball("ball", 0.04, 232, {0, 0, 0.04 + 2e-4});
+double rolling(std::int64_t points,
+               double youngs_modulus,
+               double time_step,
+               std::int64_t tets = 232) {
+  Body ball = elastic_ball("ball", 0.04, tets, {0, 0, 0.04 + 2e-4});
   ball.material = {youngs_modulus, 0.4, 1000};
   ball.surface = 2 * points;
   Scene scene = floor_scene({ball}, time_step, 0.6);
@@ -103,6 +106,18 @@ TEST(ElasticBall, RollsTheFasterTheMorePointsItHas) {
   EXPECT_NEAR(few, 0.675, 0.08);
   EXPECT_NEAR(many, 0.801, 0.05);
   EXPECT_LT(few, many);
+}
+
+/// The more so with shorter steps and smaller cells.
+TEST(LongElasticBall, RollsNearlyAsFastAsARigidOne) {
+  const double points = rolling(1600, 1e6, 2e-3), more_points = rolling(6400, 1e6, 2e-3);
+  const double steps = rolling(6400, 1e6, 5e-4), cells = rolling(6400, 1e6, 5e-4, 1800);
+  EXPECT_GT(points, 0.8);
+  EXPECT_LT(points, more_points);
+  EXPECT_LT(more_points, steps);
+  EXPECT_LT(steps, cells);
+  EXPECT_GT(cells, 0.95);
+  EXPECT_LT(cells, 1);
 }
 
 }  // namespace

@@ -196,6 +196,43 @@ TEST(PairContacts, ABondKeepsItsAreaAsItsSurfaceTurnsAway) {
   EXPECT_NEAR(area_with(0.1, 0.01), 0.25, 1e-14);
 }
 
+/// A tip at a distance from the bottom of a valley, whose sides rise by 10 degrees.
+PairScene tip_in_valley(double x) {
+  const double rise = std::tan(0.1745), y = 0.3, z = 1.3 * h;
+  PairScene scene;
+  scene.add_mesh(
+      {{-1, -1, rise}, {0, -1, 0}, {0, 1, 0}, {-1, 1, rise}, {1, -1, rise}, {1, 1, rise}},
+      {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}}, still());
+  scene.add_mesh({{x, y, z}, {x - 0.1, y - 0.1, 0.1}, {x + 0.1, y - 0.1, 0.1}, {x, y + 0.1, 0.1}},
+                 {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}}, {.is_rigid = false});
+  return scene;
+}
+
+/// It touches both sides. The nearer one has its area, or the one that it is bonded to.
+TEST(PairContacts, ATipBetweenTwoFacesHasItsAreaOnce) {
+  PairScene left = tip_in_valley(-0.2 * h), right = tip_in_valley(0.2 * h);
+  const std::vector<ReportedContact> before = left.contacts();
+  ASSERT_EQ(before.size(), 2U);
+  const double area = area_of(before);
+  ASSERT_GT(area, 0);
+  for (const double intensity : {0.0, 0.5}) {
+    std::vector<ContactRecord> records;
+    for (const ReportedContact& contact : before) {
+      records.push_back({.key = contact.key,
+                         .area = contact.area,
+                         .intensity = contact.area > 0 ? intensity : 0,
+                         .normal_world = contact.normal});
+    }
+    const std::vector<ReportedContact> after = right.contacts(records);
+    ASSERT_EQ(after.size(), 2U);
+    EXPECT_NEAR(area_of(after), area, 1e-12) << intensity;
+    for (std::size_t c = 0; c < 2; ++c) {
+      EXPECT_EQ(after[c].key, before[c].key);
+      EXPECT_EQ(after[c].area > 0, (before[c].area > 0) == (intensity > 0)) << intensity;
+    }
+  }
+}
+
 /// Bodies in the other order: the same contacts with sides exchanged.
 TEST(PairContacts, TheOrderOfBodiesChangesNothing) {
   const Square below = fine_box({0, 0, -1}, {1, 1, 0}, 3);
