@@ -8,19 +8,21 @@
 #   TETWARP_GPU_PEERS   output of bench/peers/gpu_samplers.py on this machine
 
 peer_packages=(libvtk9-dev libtbb-dev libinsighttoolkit5-dev python3-siconos python3-h5py
-  python3-scipy)
+  python3-scipy python3-torch plastimatch)
 
 run_bench() {
-  local folder=$root/build/bench python=/usr/bin/python3 status=0 with_peers=no argument results
+  local folder=$root/build/bench python=/usr/bin/python3 status=0 with_peers=no installs=no
+  local argument results
   local arguments=() required=("${packages[@]}" python3-matplotlib)
   for argument in "$@"; do
     case $argument in
       --peers) with_peers=yes ;;
-      --install) required+=("${peer_packages[@]}") ;;
+      --install) installs=yes required+=("${peer_packages[@]}") ;;
       *) arguments+=("$argument") ;;
     esac
   done
   install_packages "${required[@]}"
+  [[ $installs == no ]] || install_python_peers
   unset OMP_WAIT_POLICY  # threads may spin: nothing else should run meanwhile
   [[ -x $python ]] || python=python3
   results=$folder/results/$(date +%F)-$(machine_name)
@@ -48,6 +50,7 @@ bench_peers() {
   done
   cmake --build "$folder" --target tetwarp_bench_peers
   "$folder/tetwarp_bench_peers" "$results-beside.json" || return
+  bench_warp_python || echo "warp_python.py failed"
   bench_cantilever
   bench_contact_scenes
   "$python" -c 'import siconos.numerics, h5py, scipy' 2>/dev/null || return 0
@@ -56,6 +59,25 @@ bench_peers() {
     <<<"${TETWARP_FCLIB_DATA:+$TETWARP_FCLIB_DATA:}"
   "$python" "$root/bench/peers/siconos_nsgs.py" "$problems"/*.hdf5 | tee "$results-siconos.log"
   TETWARP_PEERS=$results-siconos.log
+}
+
+# Packages of PyPI that the warp from Python is measured beside, in an environment of their own. It is
+# of the interpreter that CMake builds the module for.
+install_python_peers() {
+  [[ -x $folder/python_peers/bin/python ]] || python3 -m venv "$folder/python_peers"
+  "$folder/python_peers/bin/python" -m pip install --quiet --no-compile \
+    -r "$root/bench/peers/python.txt"
+}
+
+bench_warp_python() {
+  local program=$root/bench/peers/warp_python.py python=$folder/python_peers/bin/python
+  if [[ ! -x $python ]]; then
+    echo "missing: $folder/python_peers; the warp from Python is left out, --install installs it"
+    return 0
+  fi
+  cmake --build "$folder" --target tetwarp_python || return
+  PYTHONPATH=$folder/python "$python" "$program" all "$folder/warp_python" "$results-python.json" &&
+    "$python" "$program" table "$results-python.json" >"$folder/warp_python.md"
 }
 
 # One cantilever in several simulators, on one thread; a program that is missing is left out.

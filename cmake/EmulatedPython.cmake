@@ -16,4 +16,5 @@ endforeach()
 add_test(NAME python_device
   COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/python/tests/run.py -k device)
 set_tests_properties(python_device PROPERTIES LABELS python SKIP_RETURN_CODE 77 TIMEOUT 300
-  ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/emulated_python;PYTHONDONTWRITEBYTECODE=1")
+  ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1"
+  ENVIRONMENT_MODIFICATION "PYTHONPATH=path_list_prepend:${PROJECT_BINARY_DIR}/emulated_python")

@@ -10,6 +10,7 @@ void bind_contact(nanobind::module_& module);
 void bind_files(nanobind::module_& module);
 void bind_mesh(nanobind::module_& module);
 void bind_operator(nanobind::module_& module);
+void bind_resample(nanobind::module_& module);
 void bind_simulate(nanobind::module_& module);
 void bind_tracker(nanobind::module_& module);
 void bind_volume(nanobind::module_& module);

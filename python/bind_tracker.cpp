@@ -245,12 +245,14 @@ nb::dict fill(const ContactTracker& tracker) {
 nb::dict end_step(ContactTracker& tracker,
                   const In<double>& impulse,
                   const In<double>& velocity,
+                  const In<double>& pressing,
                   const nb::list& bodies) {
   ContactSolution solution;
   solution.impulse = vector_of(impulse);
   solution.velocity = vector_of(velocity);
   const Places places(bodies);
-  AdhesionStep step = tracker.end_step(solution, std::span<const BodyPlace>(places.places));
+  AdhesionStep step = tracker.end_step(solution, std::span<const BodyPlace>(places.places),
+                                       {pressing.data(), pressing.size()});
   const std::size_t count = step.intensity.size();
   nb::dict all;
   all["intensity"] = array_of(std::move(step.intensity));
@@ -267,7 +269,8 @@ void bind_tracker(nb::module_& module) {
       .def("begin_step", &begin_step, nb::arg("count"), nb::arg("contacts"), nb::arg("bodies"),
            nb::arg("time_step"))
       .def("fill", &fill)
-      .def("end_step", &end_step, nb::arg("impulse"), nb::arg("velocity"), nb::arg("bodies"))
+      .def("end_step", &end_step, nb::arg("impulse"), nb::arg("velocity"), nb::arg("pressing"),
+           nb::arg("bodies"))
       .def("records", [](const ContactTracker& tracker) {
         return table_of(tracker.records(), [](auto each) { for_record_members(each); });
       });

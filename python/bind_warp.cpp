@@ -2,107 +2,27 @@
 /// The Warper.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <array>
-#include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
-#include <stdexcept>
 #include <string>
 #include <tetwarp/warp.hpp>
 #include <utility>
 #include <vector>
 
 #include "host/base/report_fields.hpp"
+#include "python/array_warper.hpp"
 #include "python/arrays.hpp"
 #include "python/bind.hpp"
 #include "python/choices.hpp"
 #include "python/curved_arrays.hpp"
-#include "python/interpreter_lock.hpp"
-#include "python/interruption.hpp"
 
 namespace tetwarp::python {
 namespace {
-/// Whether arrays in C order share memory.
-bool overlap(const auto& one, const auto& other) {
-  const auto bytes = [](const void* data) { return static_cast<const std::byte*>(data); };
-  const std::byte* const first = bytes(one.data());
-  const std::byte* const second = bytes(other.data());
-  return first < second + other.nbytes() && second < first + one.nbytes();
-}
-
-/// A Warper and the arrays of its sources, which it reads in place.
-class ArrayWarper {
- public:
-  ArrayWarper(std::vector<AnySamples> sources,
-              const Grid& grid,
-              const CurvedMesh& mesh,
-              const WarpOptions& options)
-      : sources_(std::move(sources)), warper_(make_warper(grid, mesh, options)) {}
-
-  StepReport step(const PositionsView& deformed, const WarpTarget& target, nb::object progress) {
-    const OneCall call(is_running_, "Warper");
-    Interruption interruption(std::move(progress));
-    return interruption.run([&] {
-      return warper_.step(deformed, target,
-                          [&](double fraction) { return interruption.go_on(fraction); });
-    });
-  }
-
-  /// What all steps share, with the records of the steps so far.
-  /// @throws std::runtime_error  a step is running, which adds its record
-  std::string report() {
-    const OneCall call(is_running_, "Warper");
-    return to_json(warper_.report());
-  }
-
-  /// @pre no step is running
-  const Report& shared() const { return warper_.report(); }
-
-  bool shares_memory(const AnyOut& out) const {
-    return std::ranges::any_of(sources_,
-                               [&](const AnySamples& source) { return overlap(source, out); });
-  }
-
- private:
-  Warper make_warper(const Grid& grid, const CurvedMesh& mesh, const WarpOptions& options) const {
-    std::vector<VolumeView> views;
-    for (const AnySamples& samples : sources_) views.push_back(view_of(samples, grid));
-    const LockReleased release;
-    return {views, mesh, options};
-  }
-
-  std::vector<AnySamples> sources_;
-  Warper warper_;
-  std::atomic<bool> is_running_ = false;
-};
-
-/// An array of `arrays`, null if there is none of this name.
-template <class T>
-T* data_of(const nb::dict& arrays, const char* name) {
-  if (!arrays.contains(name)) return nullptr;
-  return nb::cast<nb::ndarray<T, nb::c_contig>>(arrays[name], false).data();
-}
-
-/// Arrays that are all in the memory of the first volume.
-WarpTarget target_of(const std::vector<void*>& volumes, Memory memory, const nb::dict& extras) {
-  WarpTarget target{.volumes = volumes};
-  target.memory = memory;
-  target.mask = data_of<std::uint8_t>(extras, "mask");
-  target.owner = data_of<std::int32_t>(extras, "owner");
-  target.fields = {.displacement = data_of<float>(extras, "displacement"),
-                   .jacobian = data_of<float>(extras, "jacobian"),
-                   .gradient = data_of<float>(extras, "gradient"),
-                   .strain = data_of<float>(extras, "strain"),
-                   .forward = data_of<float>(extras, "forward")};
-  return target;
-}
-
 nb::dict dict_of(const Totals& totals) {
   nb::dict all;
   all["before"] = totals.before;
@@ -137,38 +57,35 @@ nb::dict dict_of(const StepOf& of) {
   return report;
 }
 
+/// What all steps share, read after a step.
+StepOf step_of(const ArrayWarper& warper, StepReport step) {
+  const Report& whole = warper.shared();
+  return {std::move(step), whole.backend, whole.backend_reason,
+          whole.device,    whole.threads, whole.position_quantum};
+}
+
 StepOf run_step(ArrayWarper& warper,
                 const AnyPoints& deformed,
                 const std::vector<AnyOut>& volumes,
                 const nb::dict& extras,
-                bool holds_previous,
                 std::uintptr_t stream,
                 nb::object progress) {
-  const auto out_name = [&](std::size_t n) {
-    return volumes.size() == 1 ? std::string("out") : "out[" + std::to_string(n) + "]";
-  };
-  std::vector<void*> samples;
-  samples.reserve(volumes.size());
-  for (std::size_t n = 0; n < volumes.size(); ++n) {
-    const std::span earlier = std::span(volumes).first(n);
-    if (warper.shares_memory(volumes[n]) ||
-        std::ranges::any_of(earlier, [&](const AnyOut& out) { return overlap(out, volumes[n]); })) {
-      throw std::invalid_argument(out_name(n) + ": shares memory with a source or another output");
-    }
-    if (overlap(deformed, volumes[n])) {
-      throw std::invalid_argument(out_name(n) + ": shares memory with deformed");
-    }
-    samples.push_back(volumes[n].data());
-  }
-  const PositionsView positions(deformed.data(), static_cast<std::int64_t>(deformed.shape(0)),
-                                memory_of(deformed));
-  WarpTarget target = target_of(samples, memory_of(volumes.front()), extras);
-  target.holds_previous = holds_previous;
-  target.stream = reinterpret_cast<void*>(stream);
-  const StepReport step = warper.step(positions, target, std::move(progress));
-  const Report& whole = warper.shared();
-  return {step,         whole.backend, whole.backend_reason,
-          whole.device, whole.threads, whole.position_quantum};
+  return step_of(warper, warper.step({deformed, volumes, extras, stream}, std::move(progress)));
+}
+
+void begin_warp_step(ArrayWarper& warper,
+                     const AnyPoints& deformed,
+                     const std::vector<AnyOut>& volumes,
+                     const nb::dict& extras,
+                     std::uintptr_t stream,
+                     nb::object progress,
+                     nb::object given) {
+  warper.begin_step({deformed, volumes, extras, stream}, std::move(given), std::move(progress));
+}
+
+std::pair<nb::object, StepOf> finish_warp_step(ArrayWarper& warper) {
+  auto [given, step] = warper.finish_step();
+  return {std::move(given), step_of(warper, std::move(step))};
 }
 
 void make_array_warper(ArrayWarper* self,
@@ -226,7 +143,11 @@ void bind_warp(nb::module_& module) {
            nb::arg("output_grid").none(), nb::arg("backend"), nb::arg("device"), nb::arg("threads"))
       .def("report", &ArrayWarper::report)
       .def("step", &run_step, nb::arg("deformed"), nb::arg("volumes"), nb::arg("extras"),
-           nb::arg("holds_previous"), nb::arg("stream"), nb::arg("progress").none());
+           nb::arg("stream"), nb::arg("progress").none())
+      .def("begin_step", &begin_warp_step, nb::arg("deformed"), nb::arg("volumes"),
+           nb::arg("extras"), nb::arg("stream"), nb::arg("progress").none(), nb::arg("given"))
+      .def("finish_step", &finish_warp_step)
+      .def_prop_ro("steps_in_flight", &ArrayWarper::steps_in_flight);
 }
 
 }  // namespace tetwarp::python

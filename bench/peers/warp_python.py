@@ -2,11 +2,13 @@
 """The warp from Python beside other packages, on the same two cases.
 
     python3 bench/peers/warp_python.py prepare FOLDER     inputs and exact results, by tetwarp
-    python3 bench/peers/warp_python.py run PEER FOLDER    appends rows to FOLDER/rows.json; `all`:
-                                                          those that are installed
-    python3 bench/peers/warp_python.py table FOLDER       the table on standard output
+    python3 bench/peers/warp_python.py run PEER FOLDER    appends rows to FOLDER/rows.json
+    python3 bench/peers/warp_python.py all FOLDER RESULTS prepares, runs every peer that is installed,
+                                                          and writes the rows of this run to RESULTS
+    python3 bench/peers/warp_python.py table RESULTS      the table on standard output
 
-A PEER needs its own package only; each case runs in a process of its own, under Linux. Seconds are
+A PEER needs its own package only: one that this interpreter lacks is looked for in that of the
+distribution. Each case runs in a process of its own, under Linux. Seconds are
 of the processor, one thread, the least of three runs (SciPy: of two), of the whole call: what
 follows from node positions alone is part of it. Memory is the peak of the process in the first run
 beyond its inputs and imports; of a command it is that of the command by GNU time, and not measured
@@ -17,10 +19,12 @@ thousandth of the range of the image.
 
 import json
 import os
+import re
 import resource
 import subprocess
 import sys
 import time
+from datetime import datetime, timezone
 from pathlib import Path
 
 import numpy as np
@@ -269,18 +273,19 @@ def torch_call(case):
     return call
 
 
+#: Module, call, job, and name in the table.
 PEERS = {
-    "tetwarp": ("tetwarp", tetwarp_call, "whole job"),
-    "spam": ("spam", spam_call, "whole job"),
-    "vtk": ("vtk", vtk_call, "whole job, two vtkProbeFilter"),
-    "scipy": ("scipy", scipy_call, "whole job, cells of its own: LinearNDInterpolator"),
-    "simpleitk": ("SimpleITK", sitk_call, "half: the exact field is given"),
-    "ants": ("antspyx", ants_call, "half: the exact field is given"),
-    "greedy": ("picsl_greedy", greedy_call, "half: the exact field is given in a file"),
-    "plastimatch": ("plastimatch", plastimatch_call,
-                    "half: the exact field is given; its command, with files in and out"),
-    "torch": ("torch", torch_call, "half: exact positions are given"),
+    "tetwarp": ("tetwarp", tetwarp_call, "whole", "tetwarp"),
+    "spam": ("spam", spam_call, "whole", "spam {}"),
+    "vtk": ("vtk", vtk_call, "whole", "VTK {}, two probe filters"),
+    "scipy": ("scipy", scipy_call, "whole", "SciPy {}, `LinearNDInterpolator`"),
+    "simpleitk": ("SimpleITK", sitk_call, "half", "SimpleITK {}"),
+    "torch": ("torch", torch_call, "half", "PyTorch {}, `grid_sample`"),
+    "ants": ("antspyx", ants_call, "half", "ANTs (antspyx {})"),
+    "greedy": ("picsl_greedy", greedy_call, "half", "greedy {}"),
+    "plastimatch": ("plastimatch", plastimatch_call, "half", "plastimatch {}"),
 }
+INTERPRETERS = (sys.executable, "/usr/bin/python3")
 
 
 def memory(name):
@@ -316,13 +321,13 @@ def version_of(module):
     if module == "plastimatch":
         return subprocess.check_output([module, "--version"], text=True).split()[-1]
     try:
-        return version(module)
+        return version(module).partition("+")[0]  # without the name of a build
     except PackageNotFoundError:
         return sys.modules[module.split(".")[0]].__version__
 
 
 def run(peer, folder, path):
-    module, make, job = PEERS[peer]
+    module, make, job, title = PEERS[peer]
     case = dict(np.load(path))
     seconds, (samples, covered), peak, same = measured(make(case), 2 if peer == "scipy" else 3)
     inside = case["owner"] >= 0
@@ -330,7 +335,8 @@ def run(peer, folder, path):
     value_range = np.ptp(case["image"])
     given = covered is None
     row = dict(
-        case=path.stem, peer=f"{peer} {version_of(module)}", job=job, seconds=seconds,
+        case=path.stem, peer=f"{peer} {version_of(module)}", title=title.format(version_of(module)),
+        job=job, seconds=seconds,
         megabytes=None if peak is None else peak / 2**20,
         missing=None if given else int((inside & ~covered).sum()),
         beyond=None if given else int((covered & ~inside).sum()),
@@ -341,36 +347,67 @@ def run(peer, folder, path):
         file.write(json.dumps(row) + "\n")
 
 
-def table(folder):
-    rows = [json.loads(line) for line in open(folder / "rows.json", encoding="utf8")]
-    for case in sorted({row["case"] for row in rows}):
-        print(f"\n{case}\n\n| package | job | s | MB | missing | beyond | wrong | largest error | "
-              "same bits |\n|---|---|--:|--:|--:|--:|--:|--:|---|")
-        for row in rows:
-            if row["case"] != case:
-                continue
-            counts = " | ".join("given" if row[k] is None else f"{row[k]:,}"
+def run_peer(peer, folder):
+    """Its rows of all cases, by the first interpreter that has it."""
+    for path in sorted(folder.glob("*.npz"), reverse=True):
+        for interpreter in INTERPRETERS:
+            command = [interpreter, __file__, "run", peer, str(folder), str(path)]
+            done = subprocess.run(command, text=True, stderr=subprocess.PIPE, check=False)
+            if done.returncode == 0:
+                break
+        else:
+            print(f"{peer}: left out: {done.stderr.strip().splitlines()[-1]}")
+
+
+def run_all(folder, results):
+    load = os.getloadavg()[0]
+    prepare(folder)
+    rows = folder / "rows.json"
+    rows.unlink(missing_ok=True)
+    for peer in PEERS:
+        run_peer(peer, folder)
+    model = re.search("model name.*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf8"))
+    commit = subprocess.run(["git", "-C", Path(__file__).parent, "rev-parse", "--short", "HEAD"],
+                            text=True, capture_output=True, check=False).stdout.strip()
+    context = dict(
+        date=datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        program="bench/peers/warp_python.py", processor=model.group(1) if model else "unknown",
+        num_cpus=os.cpu_count(), busy=load > 0.3, commit=commit, python=sys.version.split()[0])
+    lines = rows.read_text(encoding="utf8").splitlines()
+    results.write_text(json.dumps({"context": context, "rows": list(map(json.loads, lines))}, indent=1)
+                       + "\n", encoding="utf8")
+
+
+def table(results):
+    rows = json.loads(results.read_text(encoding="utf8"))["rows"]
+    print("| case | package | job | s | MB | missing | beyond | wrong | largest error, of the range |\n"
+          "|---|---|---|--:|--:|--:|--:|--:|--:|")
+    for case in sorted({row["case"] for row in rows}, reverse=True):
+        cell = case
+        for row in (row for row in rows if row["case"] == case):
+            counts = " | ".join("" if row[k] is None else f"{row[k]:,}"
                                 for k in ("missing", "beyond"))
-            peak = "not measured" if row["megabytes"] is None else f"{row['megabytes']:.0f}"
-            print(f"| {row['peer']} | {row['job']} | {row['seconds']:.2f} | {peak} | "
-                  f"{counts} | {row['wrong']:,} | {row['error']:.1e} | "
-                  f"{'yes' if row['same'] else 'no'} |")
+            peak = "" if row["megabytes"] is None else f"{row['megabytes']:.0f}"
+            print(f"| {cell} | {row['title']} | {row['job']} | {row['seconds']:.2g} | {peak} | "
+                  f"{counts} | {row['wrong']:,} | {row['error']:.1e} |")
+            cell = ""
+    others = [f"{row['title']}, {row['case']}" for row in rows if not row["same"]]
+    print("\nOther bits in further runs: " + ("; ".join(others) or "none"))
 
 
 def main():
-    if len(sys.argv) == 3 and sys.argv[1] == "prepare":
-        prepare(Path(sys.argv[2]))
-    elif len(sys.argv) == 3 and sys.argv[1] == "table":
-        table(Path(sys.argv[2]))
-    elif len(sys.argv) == 4 and sys.argv[1] == "run" and sys.argv[2] in (*PEERS, "all"):
-        for peer in PEERS if sys.argv[2] == "all" else [sys.argv[2]]:
-            for path in sorted(Path(sys.argv[3]).glob("*.npz")):
-                command = [sys.executable, __file__, "run", peer, sys.argv[3], str(path)]
-                done = subprocess.run(command, text=True, stderr=subprocess.PIPE, check=False)
-                if done.returncode:
-                    print(f"{peer}: left out: {done.stderr.strip().splitlines()[-1]}")
-    elif len(sys.argv) == 5 and sys.argv[1] == "run":
-        run(sys.argv[2], Path(sys.argv[3]), Path(sys.argv[4]))
+    words = sys.argv[1:]
+    paths = [Path(word) for word in words[1:]]
+    if words[:1] == ["prepare"] and len(words) == 2:
+        prepare(paths[0])
+    elif words[:1] == ["table"] and len(words) == 2:
+        table(paths[0])
+    elif words[:1] == ["all"] and len(words) == 3:
+        run_all(*paths)
+    elif words[:1] == ["run"] and len(words) == 3 and words[1] in PEERS:
+        run_peer(words[1], paths[1])
+    elif words[:1] == ["run"] and len(words) == 4:
+        run(words[1], *paths[1:])
     else:
         sys.exit(__doc__)
 

@@ -53,7 +53,8 @@ def main():
     moved = np.linalg.norm(motion, axis=1)[inner]
     print(f"{inner.sum()} nodes, moved by {moved.mean():.2f} voxels on average, found with an error "
           f"of {error.mean():.4f}, at most {error.max():.4f}, in {seconds:.2f} s")
-    return before, after, operator.forward(before), misfits
+    found = tetwarp.WarpOperator(grid, rest, cells, nodes, interpolator="cubic").forward(before)
+    return before, after, found, misfits
 
 
 if __name__ == "__main__":

@@ -284,7 +284,7 @@ class TETWARP_EXPORT Warper {
   /// @throws as the other step(); std::invalid_argument when there are several sources
   Volume step(const PositionsView& deformed);
 
-  /// Sums over the finished steps.
+  /// Sums over the finished steps, and the records of the last ones: of 500 at least, 1000 at most.
   const Report& report() const;
 
  private:

@@ -2,6 +2,7 @@
 /// The public calls: checks of all arguments, the queue of steps, the report.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -23,6 +24,9 @@
 
 namespace tetwarp {
 namespace {
+/// Records of steps that a report has at least: memory does not grow with the length of a series.
+constexpr std::ptrdiff_t kept_steps = 500;
+
 void check_ranges(const std::vector<VolumeView>& sources,
                   const std::vector<std::vector<double>>& ranges) {
   if (ranges.size() != sources.size()) {
@@ -242,9 +246,12 @@ StepReport Warper::finish_step() {
   if (state_->queue->size() == 0) throw std::logic_error("finish_step: no step is in flight");
   StepReport step = state_->queue->finish();
   Report& report = state_->report;
-  step.step = static_cast<std::int64_t>(report.steps.size());
+  step.step = report.steps.empty() ? 0 : report.steps.back().step + 1;
   report.timings += step.timings;
   report.counts += step.counts;
+  if (std::ssize(report.steps) == 2 * kept_steps) {
+    report.steps.erase(report.steps.begin(), report.steps.begin() + kept_steps);
+  }
   report.steps.push_back(step);
   return step;
 }

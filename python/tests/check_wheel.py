@@ -10,6 +10,14 @@ import sys
 
 import numpy as np
 
+#: Libraries that a wheel may carry beside HDF5 (BSD), which is in the module, and their licenses: none
+#: would bind a program that uses the wheel, as the GPL would.
+LICENSES = {
+    "aec": "BSD-2-Clause", "fmt": "MIT", "gif": "MIT", "hwy": "Apache-2.0 or BSD-3-Clause",
+    "niftiio": "public domain", "png16": "libpng-2.0", "sz": "BSD-2-Clause", "z": "Zlib",
+    "znz": "public domain",
+}
+
 for package in sys.argv[1:]:
     importlib.import_module(package)
 h5py, sitk, tetwarp, vtk = (sys.modules[name] for name in ("h5py", "SimpleITK", "tetwarp", "vtk"))
@@ -41,6 +49,8 @@ assert np.array_equal(tetwarp.read("other.nii.gz").array, volume.array)
 libraries = pathlib.Path(tetwarp.__file__).parent.parent / "tetwarp.libs"
 names = {path.name for path in libraries.iterdir()}
 assert all(re.search(r"-[0-9a-f]{8}\.so", name) for name in names), names
+unknown = {re.match(r"lib(.+)-[0-9a-f]{8}", name)[1] for name in names} - set(LICENSES)
+assert not unknown, f"find out the licenses of {unknown}, and add them to LICENSES or leave them out"
 used = {name for name in names if name in pathlib.Path("/proc/self/maps").read_text("utf8")}
 print(f"{sys.argv[1:]}: {len(used)} of {len(names)} libraries of the wheel in this process; "
       f"HDF5 of h5py: {h5py.version.hdf5_version}")

@@ -280,19 +280,19 @@ def test_a_default_value_that_is_stored_as_another_one_is_told(dtype, single_tet
     samples = np.zeros((2, 2, 2), dtype)
     options = dict(interpolator="nearest", threads=1)
     limits = np.iinfo(dtype) if np.dtype(dtype).kind in "iu" else np.finfo(dtype)
-    values = [0, -1, 1, 0.5, 1.5, 200, 300.5, -40000, 2**40, 1e300, float(limits.min), float(limits.max)]
+    values = [0, -1, 1, 0.5, 1.5, 200, 300.5, -40000, 2**24 + 1, 2**40, 1e300, float(limits.min), float(limits.max)]
 
     for value in values:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             stored = tetwarp.warp(
                 samples, points, cells, points + 90, default_value=value, **options).volume[0, 0, 0]
-        is_whole = np.dtype(dtype).kind in "iu"
-        kept = float(stored) == value if is_whole else bool(np.isfinite(stored))
+        is_exact = np.dtype(dtype).kind in "iu" or float(value).is_integer()
+        kept = float(stored) == value if is_exact else bool(np.isfinite(stored))
         assert len(caught) == (not kept), (value, stored)
         for warning in caught:
             assert warning.filename == __file__ and warning.category is RuntimeWarning
-            assert str(warning.message).endswith(f"does not fit {dtype}, {float(stored):g} is stored")
+            assert str(warning.message).endswith(f"does not fit {dtype}, {float(stored):.15g} is stored")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         tetwarp.warp(samples, points, cells, points, outside="identity", default_value=0.5, **options)
@@ -338,3 +338,20 @@ def test_arguments_of_other_deformations_are_refused(kind, mesh):
         else:
             assert not np.array_equal(moved, usual), name
     assert refused and refused != set(given)
+
+
+def test_masks_are_found_at_any_depth_of_lists():
+    hidden = np.ma.array([1.0, 2, 3], mask=[0, 1, 0])
+    shown = np.ma.array([1.0, 2, 3], mask=[0, 0, 0])
+    is_masked = tetwarp._values.is_masked
+    for plain in ([], [[]], "ab", ["ab", b"c"], [range(3), (1, 2.5)], [shown, [shown, None]], [None],
+                  [[[1], 2], 3, np.arange(3)], [hidden.data], np.ma.array([1, 2])):
+        assert not is_masked(plain), plain
+    for masked in (hidden, np.ma.masked, [hidden], (1, [2, (shown, hidden)]), [[1, 2, np.ma.masked]],
+                   ["ab", [None, [range(2), [hidden]]]]):
+        assert is_masked(masked), masked
+    endless: list = []
+    endless.append(endless)
+    assert not is_masked(endless)
+    with pytest.raises(ValueError, match="rest: has masked elements"):
+        tetwarp.transform_points([(0, 0, 0)], [[0, 0, 0], [1, 0, np.ma.masked]], [(0, 1, 2, 3)], [])

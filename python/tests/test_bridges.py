@@ -79,13 +79,21 @@ def test_pyvista_gets_images_and_meshes(turned, mesh, twisted):
     assert np.allclose(back.points, twisted) and np.array_equal(back.cells, mesh.cells)
 
 
-def test_meshio_there_and_back(mesh, tmp_path):
+@pytest.mark.parametrize("hexahedra", [False, True])
+@pytest.mark.parametrize("ending, needs", [("inp", "meshio"), ("bdf", "meshio"), ("nas", "meshio"),
+                                           ("xdmf", "h5py"), ("e", "netCDF4"), ("vtu", "meshio")])
+def test_files_of_finite_element_programs_come_and_go_by_meshio(
+        ending, needs, hexahedra, volume, tmp_path):
+    """Abaqus, Nastran, XDMF, Exodus and VTK; Nastran's numbers have 16 characters."""
     meshio = pytest.importorskip("meshio")
+    pytest.importorskip(needs)
+    mesh = tetwarp.lattice_mesh(volume, cells=3, hexahedra=hexahedra)
 
-    meshio.write(tmp_path / "mesh.inp", tetwarp.to_meshio(mesh))
+    meshio.write(tmp_path / f"mesh.{ending}", tetwarp.to_meshio(mesh))
 
-    back = tetwarp.mesh_from(meshio.read(tmp_path / "mesh.inp"))
-    assert np.allclose(back.points, mesh.points) and np.array_equal(back.cells, mesh.cells)
+    back = tetwarp.mesh_from(meshio.read(tmp_path / f"mesh.{ending}"))
+    assert np.allclose(back.points, mesh.points, rtol=1e-7, atol=1e-9)
+    assert np.array_equal(back.cells, mesh.cells)
 
 
 def test_wrong_arguments_are_named(turned, monkeypatch):

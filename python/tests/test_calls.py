@@ -188,8 +188,9 @@ def test_the_report_is_whole_while_another_thread_steps(single_tet):
             steps = warper.report["steps"]
         except RuntimeError:
             continue
-        assert [step["step"] for step in steps] == list(range(len(steps)))
+        numbers = [step["step"] for step in steps]
+        assert not numbers or numbers == list(range(numbers[0], numbers[0] + len(numbers)))
         assert all(step["counts"]["voxels"] == 64 for step in steps)
     thread.join()
 
-    assert len(warper.report["steps"]) == len(stepped)
+    assert warper.report["steps"][-1]["step"] == len(stepped) - 1

@@ -35,6 +35,25 @@ def test_matrices_may_be_sparse_in_any_form():
     assert np.array_equal(tetwarp.solve_contacts(**problem).impulse, expected)
 
 
+def test_a_tuple_of_four_is_a_sparse_matrix_where_it_can_be_one():
+    from tetwarp._contact import csr_of
+
+    def dense_of(value):
+        csr = csr_of(value, "jacobian")
+        rows = np.repeat(np.arange(csr.shape[0]), np.diff(csr.indptr))
+        matrix = np.zeros(csr.shape)
+        matrix[rows, csr.indices] = csr.data
+        return matrix.tolist()
+
+    assert dense_of(([5.0, 7], [0, 3], [0, 2], (1, 4))) == [[5, 0, 0, 7]]
+    assert dense_of(([5.0], [1], [0, 1], (1, 2))) == [[0, 5]]
+    for rows in (((1, 0), (0, 1), (1, 1), (2, 3)), ((5, 7), (0, 1), (0, 2), (2, 2)),
+                 ((5, 7), (0, 4), (0, 2), (1, 4)), ((5, 7), (0, 1), (0, 1), (1, 2)),
+                 ((1, 0, 2), (0, 1, 2), (1, 1, 3), (2, 3, 4))):
+        assert dense_of(rows) == np.array(rows).tolist()
+        assert dense_of(tuple(map(np.array, rows))) == np.array(rows).tolist()
+
+
 def test_matrices_of_files_go_to_scipy(tmp_path):
     pytest.importorskip("scipy.sparse")
     tetwarp.write(tmp_path / "a.h5", tetwarp.ContactProblem(**GLOBAL))

@@ -13,7 +13,7 @@ import tetwarp
 
 USABLE = any(b["backend"] == "cuda" and b["usable"] for b in tetwarp.available_backends())
 EMULATED = any(b["device"] == "emulation" for b in tetwarp.available_backends())
-needs_emulation = pytest.mark.skipif(not EMULATED, reason="not the package of the emulated device")
+needs_emulation = pytest.mark.skipif(not EMULATED, reason="not on the emulated device, which the test python_device has")
 
 
 class DeviceArray:
@@ -102,7 +102,27 @@ def test_a_device_step_runs_on_the_stream_of_the_library(cupy, volume, mesh, twi
         warper._warper = types.SimpleNamespace(step=lambda *a: given.append(a) or step(*a))
         warper(twisted)
 
-    assert given[0][4] == cupy.stream.ptr == 1
+    assert given[0][3] == cupy.stream.ptr == 1
+
+
+@needs_emulation
+@pytest.mark.parametrize("place", [np.array, put])
+def test_device_steps_in_flight_have_the_bits_of_single_ones(cupy, volume, mesh, place):
+    steps = [tetwarp.deform(*mesh, kind="twist", amount=0.1 * n) for n in range(1, 5)]
+    samples = volume.array if place is np.array else put(volume.array)
+    with tetwarp.Warper(samples, *mesh, affine=volume.affine, backend="cuda") as warper:
+        expected = [warper(place(step), outputs="owner") for step in steps]
+        found = []
+        for step in steps:
+            warper.begin_step(place(step), outputs="owner")
+            if warper.steps_in_flight == 2:
+                found.append(warper.finish_step())
+        found.append(warper.finish_step())
+
+    for one, other in zip(expected, found):
+        for pair in ((one.volume, other.volume), (one.owner, other.owner)):
+            first, second = (getattr(array, "array", array) for array in pair)
+            assert np.array_equal(first, second)
 
 
 SHARED = put(np.zeros((20, 24, 32), np.float32))

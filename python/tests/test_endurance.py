@@ -46,10 +46,9 @@ def resident():
 
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc")
-@pytest.mark.parametrize("keeps_warper, count, bytes_per_warp", [(False, 3000, 256),
-                                                                 (True, 10000, 512)])
-def test_memory_stays_the_same(single_tet, keeps_warper, count, bytes_per_warp):
-    """A Warper keeps counts and times of its steps, which are no 400 bytes each."""
+@pytest.mark.parametrize("keeps_warper, count", [(False, 3000), (True, 10000)])
+def test_memory_stays_the_same(single_tet, keeps_warper, count):
+    """A Warper keeps counts and times of its last 1000 steps at most."""
     points, cells = single_tet
     samples = np.random.default_rng(1).random((6, 6, 6), np.float32)
     warper = tetwarp.Warper(samples, points, cells)
@@ -63,9 +62,24 @@ def test_memory_stays_the_same(single_tet, keeps_warper, count, bytes_per_warp):
         gc.collect()
         return resident()
 
-    warm = rounds(500)
+    warm = rounds(1100)
 
-    assert 1024 * (rounds(count) - warm) < count * bytes_per_warp
+    assert rounds(count) - warm < 256  # KiB: 26 bytes per step of 10,000
+
+
+def test_a_report_has_the_sums_of_all_steps_and_the_last_ones(single_tet):
+    points, cells = single_tet
+    warper = tetwarp.Warper(np.ones((4, 4, 4), np.uint8), points, cells, threads=1)
+    count = 2100
+    covered = [warper(points if number % 3 else 0.5 * points).report["counts"]["covered"]
+               for number in range(count)]
+
+    report = warper.report
+
+    assert report["counts"]["covered"] == sum(covered)
+    numbers = [step["step"] for step in report["steps"]]
+    assert numbers == list(range(numbers[0], count)) and 500 <= len(numbers) <= 1000
+    assert [step["counts"]["covered"] for step in report["steps"]] == covered[numbers[0]:]
 
 
 def test_arrays_may_be_deleted_while_they_are_in_use(volume, mesh, twisted):

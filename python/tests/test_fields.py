@@ -177,3 +177,46 @@ def test_displacements_outside_are_those_of_the_warp(outside, volume, mesh, twis
     ):
         with pytest.raises((ValueError, TypeError), match="outside"):
             call()
+
+
+GRID = tetwarp.Grid((6, 7, 8), (1.0, 1.5, 2), (3, -2, 5), ((0, -1, 0), (1, 0, 0), (0, 0, 1)))
+
+
+def _in_world(ijk):
+    return np.array(GRID.origin) + (np.array(ijk) * GRID.spacing) @ np.array(GRID.direction).T
+
+
+@pytest.mark.parametrize("hexahedra", [False, True])
+def test_fractions_of_a_box_are_products_of_lengths(hexahedra):
+    """In indices the box is [0.25, 4.75] x [-3, 2.125] x [1.5, 99]: it leaves the grid on two sides."""
+    unit, cells = tetwarp.lattice_mesh(np.ones((2, 2, 2)), cells=1, hexahedra=hexahedra)
+    unit = (unit - unit.min(axis=0)) / np.ptp(unit, axis=0)
+    low, high = np.array([(0.25, -3, 1.5), (4.75, 2.125, 99)])
+
+    filled = tetwarp.rasterize(_in_world(low + unit * (high - low)), cells, reference=GRID,
+                               fractions=True)
+
+    lengths = [np.clip(np.minimum(n + 0.5, b) - np.maximum(n - 0.5, a), 0, 1)
+               for n, a, b in zip(map(np.arange, GRID.shape[::-1]), low, high)]
+    expected = np.einsum("i,j,k->kji", *lengths)
+    assert filled.dtype == np.float64 and filled.shape == GRID.shape
+    assert np.abs(filled - expected).max() < 1e-5  # nodes are rounded to 2^-20 voxel
+
+
+def test_fractions_sum_to_the_volumes_of_the_cells_and_overlaps_add():
+    random = np.random.default_rng(4)
+    points = _in_world(random.uniform(0, 5, (30, 3)))
+    cells = np.array([random.permutation(30)[:4] for _ in range(40)])  # also inverted ones
+    edges = points[cells[:, 1:]] - points[cells[:, :1]]
+    volumes = np.abs(np.linalg.det(edges)) / 6 / np.prod(GRID.spacing)
+
+    each = [tetwarp.rasterize(points, cells[n:n + 1], reference=GRID, fractions=True)
+            for n in range(len(cells))]
+    whole = tetwarp.rasterize(points, cells, reference=GRID, fractions=True)
+
+    assert np.allclose([part.sum() for part in each], volumes, rtol=1e-4, atol=1e-5)
+    assert np.allclose(whole, sum(each), rtol=0, atol=1e-12) and whole.max() > 1.2
+    owners = tetwarp.rasterize(points, cells, reference=GRID)
+    assert (whole[owners >= 0] > 0).all() and np.max(each) < 1 + 1e-12
+    with pytest.raises(ValueError, match=r"cells: .*split_ten_nodes\(cells\)"):
+        tetwarp.rasterize(points, [range(10)], reference=GRID, fractions=True)

@@ -171,6 +171,80 @@ def test_surfaces_of_other_programs_are_read(tmp_path):
     assert surface.triangles.tolist() == [[0, 2, 1], [0, 1, 3]]
 
 
+def write_vtu(path, points, cells):
+    def array(name, kind, values, columns=1):
+        text = " ".join(map(str, np.ravel(values).tolist()))
+        return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{columns}" '
+                f'format="ascii">{text}</DataArray>')
+
+    ends = 4 * np.arange(1, len(cells) + 1)
+    path.write_text(
+        '<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid>'
+        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}"><Points>'
+        f'{array("Points", "Float64", points, 3)}</Points><Cells>'
+        f'{array("connectivity", "Int64", cells)}{array("offsets", "Int64", ends)}'
+        f'{array("types", "UInt8", [10] * len(cells))}</Cells></Piece></UnstructuredGrid></VTKFile>')
+
+
+STEP_TIMES = [0.0, 0.25, 1.5]
+
+
+@pytest.mark.parametrize("name, text", [
+    ("list.pvd", '<VTKFile type="Collection"><Collection>' + "".join(
+        f'<DataSet timestep="{time}" file="step_{n}.vtu"/>' for n, time in enumerate(STEP_TIMES))
+     + "</Collection></VTKFile>"),
+    ("list.vtu.series", '{"file-series-version": "1.0", "files": [' + ", ".join(
+        f'{{"name": "step_{n}.vtu", "time": {time}}}' for n, time in enumerate(STEP_TIMES)) + "]}"),
+    ("step_*.vtu", ""),
+    ("LIST.PVD", '<VTKFile type="Collection"><Collection>' + "".join(
+        f'<DataSet timestep="{time}" file="step_{n}.vtu"/>' for n, time in enumerate(STEP_TIMES))
+     + "</Collection></VTKFile>"),
+])
+def test_meshes_in_many_files_are_one_series(name, text, mesh, tmp_path):
+    steps = [tetwarp.deform(*mesh, amount=0.3, time=time) for time in (0.2, 0.6, 1)]
+    for number, step in enumerate(steps):
+        write_vtu(tmp_path / f"step_{number}.vtu", step, mesh.cells)
+    if text:
+        (tmp_path / name).write_text(text)
+
+    try:
+        file = tetwarp.read(tmp_path / name)
+        last = tetwarp.MeshFile(tmp_path / name, rest_step=2, axes="lps")
+    except tetwarp._core.MissingLibrary as error:
+        pytest.skip(str(error))
+
+    assert np.array_equal(file.mesh.cells, mesh.cells)
+    assert file.times == (STEP_TIMES if text else [0, 1, 2])
+    assert np.array_equal(file.mesh.points, steps[0])
+    assert np.allclose(list(file), steps, rtol=0, atol=1e-12)  # kept as displacements
+    assert np.allclose(last.mesh.points, steps[2] * (-1, -1, 1), rtol=0, atol=1e-12)
+
+
+def test_blocks_of_a_file_are_one_mesh(mesh, tmp_path):
+    away = mesh.points + 1000
+    for number, points in enumerate((mesh.points, away)):
+        write_vtu(tmp_path / f"{number}.vtu", points, mesh.cells)
+    (tmp_path / "two.vtm").write_text(
+        '<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>'
+        '<DataSet index="0" file="0.vtu"/><DataSet index="1" file="1.vtu"/>'
+        "</vtkMultiBlockDataSet></VTKFile>")
+
+    try:
+        both = tetwarp.read(tmp_path / "two.vtm").mesh
+    except tetwarp._core.MissingLibrary as error:
+        pytest.skip(str(error))
+
+    assert np.array_equal(both.points, np.vstack([mesh.points, away]))
+    assert np.array_equal(both.cells, np.vstack([mesh.cells, mesh.cells + len(away)]))
+
+
+def test_axes_without_effect_are_refused_before_samples_are_read(tmp_path):
+    tetwarp.write(tmp_path / "a.vtkhdf", np.zeros((2, 3, 4)), grid=tetwarp.Grid((2, 3, 4)))
+
+    with pytest.raises(ValueError, match="axes: has no effect on a volume that is no NIfTI"):
+        tetwarp.read(tmp_path / "a.vtkhdf", axes="lps", array="none")
+
+
 def test_displacement_fields_are_written_for_itk(mesh, twisted, volume, tmp_path):
     field = tetwarp.displacement_field(*mesh, twisted, reference=volume)
 

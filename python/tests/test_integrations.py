@@ -121,7 +121,7 @@ def test_meshes_of_vtk_are_read(fill, scan):
         with_flat.InsertNextCell(kind, ids)  # points, edges, faces, also curved ones: left out
     assert np.array_equal(fill.mesh_of(with_flat)[1], mesh.cells)
     wrong = vtk_mesh(*mesh)
-    wrong.GetCellTypesArray().SetValue(1, 14)  # a pyramid
+    fill.WrapDataObject(wrong).CellTypes[1] = 14  # a pyramid
     with pytest.raises(ValueError, match=r"found cells of VTK's types \[10, 14\]"):
         fill.mesh_of(wrong)
 
@@ -130,8 +130,10 @@ def test_a_grid_transform_has_the_displacements_of_all_voxels(fill, scan):
     volume, mesh, bent = scan
     transform = stand_in_grid_transform()
 
-    fill.fill_grid_transform(transform, tuple(reversed(volume.shape)), volume.affine,
-                             vtk_mesh(*mesh), bent, outside="falloff", falloff=30)
+    field = fill.fill_grid_transform(transform, tuple(reversed(volume.shape)), volume.affine,
+                                     vtk_mesh(*mesh), bent, outside="falloff", falloff=30)
+    assert np.shares_memory(fill.samples_of(transform.GetDisplacementGrid()), field.values)
+    del field  # VTK keeps its memory
 
     centers = volume.grid.points().reshape(-1, 3)
     places = np.array([transform.place_of(center) for center in centers])

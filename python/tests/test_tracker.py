@@ -193,6 +193,34 @@ def test_vertices_may_be_rows_in_any_list():
         assert len(bits) == 1, count
 
 
+@pytest.mark.parametrize("gap", [0, 1e-7])
+def test_what_presses_on_an_area_forms_bonds_as_an_impulse_of_the_contact_does(gap):
+    """Steps of contacts that touch, or, with a gap, come into touch only because something presses. A
+    bond goes to the pressure over that of saturation, exponentially."""
+    glue = dict(GLUE, bonding_rate=0.01, saturation_pressure=1e3, initial_intensity=0.1)
+    pressed, carried, none = (tetwarp.ContactTracker([glue]) for _ in range(3))
+    normal = 2e-4 * np.arange(1, 4)
+    goal = normal / (DT * 1e-4) / 1e3  # 0.2, 0.4, 0.6
+    impulse, intensities = np.outer(normal, (1, 0, 0)), []
+    for _ in range(5):
+        for tracker in (pressed, carried, none):
+            tracker.begin_step(found(0, 1, 2, gap=gap), (REST, REST), DT)
+        own = carried.end_step(impulse, (REST, REST))
+        others = pressed.end_step(0 * impulse, (REST, REST), pressing=normal)
+        assert np.array_equal(others.intensity, own.intensity)
+        without = none.end_step(0 * impulse, (REST, REST))
+        intensities.append(others.intensity)
+
+    way = goal - np.array(intensities[1:])
+    assert np.allclose(way[1:], way[:-1] * np.exp(-0.01 * 1e3 * DT), rtol=1e-9)
+    assert (intensities[-1] > 0.1).all() and (without.intensity <= 0.1).all()
+    with pytest.raises(ValueError, match=r"pressing: expected numbers of shape \(3,\)"):
+        none.begin_step(found(0, 1, 2), (REST, REST), DT)
+        none.end_step(impulse, (REST, REST), pressing=[1.0])
+    with pytest.raises(ValueError, match="pressing"):
+        none.end_step(impulse, (REST, REST), pressing=[1, np.nan, 1])
+
+
 def test_a_step_that_has_not_begun_does_not_end():
     for impulse in (np.zeros((1, 3)), [(0, 0, 0)], 0, None, []):
         with pytest.raises((RuntimeError, ValueError), match="end_step|impulse"):

@@ -41,11 +41,13 @@ from ._mesh import (
     split_ten_nodes,
 )
 from ._operator import WarpOperator
+from ._resample import resample
 from ._result import WarpResult
 from ._simulate import Contacts, Simulator, StepRecord, shipped_scene, shipped_scenes
 from ._tracker import AdhesionStep, ContactRecords, ContactTracker, TrackedContacts
 from ._volume import Volume, phantom
-from ._warp import Warper, warp
+from ._warp import warp
+from ._warper import Warper
 
 __all__ = [
     "AdhesionStep",
@@ -90,6 +92,7 @@ __all__ = [
     "read",
     "read_dicom",
     "read_header",
+    "resample",
     "shipped_scene",
     "shipped_scenes",
     "solve_contacts",

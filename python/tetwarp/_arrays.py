@@ -346,3 +346,18 @@ def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarra
     if not value.flags.writeable:
         raise ValueError(f"{name}: expected a writable array")
     return value
+
+
+def listed_outs(out: Any, count: int) -> list[tuple[str, Any]]:
+    """Arrays to write to, one per source, with their names in messages."""
+    given = list(out) if isinstance(out, (list, tuple)) else [out]
+    if len(given) != count:
+        raise ValueError(f"out: expected {count} arrays, got {len(given)}")
+    return [("out" if count == 1 else f"out[{n}]", array) for n, array in enumerate(given)]
+
+
+def outs_of(out: Any, shapes: Sequence[Sequence[int]], sources: Sequence[Any]) -> list[np.ndarray]:
+    """One array to write to per source, of these shapes and the types of the sources."""
+    given = listed_outs(out, len(shapes))
+    return [out_of(array, name, shape, source.dtype)
+            for (name, array), shape, source in zip(given, shapes, sources)]

@@ -48,6 +48,14 @@ def autograd_warp(
         PyTorch is not installed.
     ValueError
         naming the argument that is wrong and what it should be.
+
+    >>> import torch, tetwarp
+    >>> volume = torch.ones((8, 8, 8), dtype=torch.float64, requires_grad=True)
+    >>> rest, cells = tetwarp.lattice_mesh(volume.detach(), cells=2)
+    >>> nodes = torch.tensor(0.5 * rest, requires_grad=True)
+    >>> autograd_warp(volume, rest, cells, nodes).sum().backward()
+    >>> volume.grad.shape, nodes.grad.shape == rest.shape
+    (torch.Size([8, 8, 8]), True)
     """
     try:
         import torch

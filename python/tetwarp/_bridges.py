@@ -76,6 +76,11 @@ def volume_from(image: Any, *, axes: str) -> Volume:
     ------
     ValueError
         `image` is of another kind or has several times, or `axes` is another word.
+
+    >>> import nibabel
+    >>> image = nibabel.Nifti1Image(np.zeros((4, 3, 2), np.int16), np.diag([2, 2, 3, 1]))
+    >>> volume_from(image, axes="RAS")
+    Volume((2, 3, 4) of int16, spacing (2.0, 2.0, 3.0), name 'values')
     """
     if hasattr(image, "dataobj"):
         grid = reference_grid(image, "image")
@@ -97,6 +102,11 @@ def to_nibabel(volume: Volume, *, axes: str) -> Any:
     ------
     ImportError
         nibabel is not installed.
+
+    >>> import nibabel
+    >>> image = to_nibabel(Volume(np.zeros((2, 3, 4)), Grid((2, 3, 4))), axes="LPS")
+    >>> image.shape, nibabel.aff2axcodes(image.affine)
+    ((4, 3, 2), ('L', 'P', 'S'))
     """
     nibabel = package("nibabel", "to_nibabel", "nibabel")
     volume = checked_volume(volume, "volume")
@@ -127,6 +137,11 @@ def to_sitk(volume: Volume, *, axes: str) -> Any:
     ------
     ImportError
         SimpleITK is not installed.
+
+    >>> import SimpleITK
+    >>> image = to_sitk(Volume(np.zeros((2, 3, 4)), Grid((2, 3, 4), (1, 1, 3))), axes="LPS")
+    >>> image.GetSize(), image.GetSpacing()
+    ((4, 3, 2), (1.0, 1.0, 3.0))
     """
     sitk = package("SimpleITK", "to_sitk", "SimpleITK")
     volume = checked_volume(volume, "volume")
@@ -143,6 +158,13 @@ def to_sitk_transform(field: Field, *, axes: str) -> Any:
         SimpleITK is not installed.
     ValueError
         `field` has not three components.
+
+    >>> import SimpleITK, tetwarp
+    >>> mesh = tetwarp.lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=2)
+    >>> moved = tetwarp.deform(*mesh, kind="translate", offset=(0.25, 0, 0))
+    >>> field = tetwarp.displacement_field(*mesh, moved, shape=(8, 8, 8))
+    >>> to_sitk_transform(field, axes="LPS").TransformPoint((4.0, 4.0, 4.0))
+    (3.75, 4.0, 4.0)
     """
     sitk = package("SimpleITK", "to_sitk_transform", "SimpleITK")
     check_kind(field, Field, "field")
@@ -162,6 +184,11 @@ def to_pyvista(value: Any, deformed: Any = None) -> Any:
     ------
     ImportError
         PyVista is not installed.
+
+    >>> import pyvista
+    >>> image = to_pyvista(Volume(np.zeros((2, 3, 4)), Grid((2, 3, 4)), "heat"))
+    >>> image.dimensions, image.point_data.keys()
+    ((4, 3, 2), ['heat'])
     """
     pyvista = package("pyvista", "to_pyvista", "pyvista")
     if isinstance(value, Volume):
@@ -196,6 +223,11 @@ def to_meshio(mesh: Any, **data: Any) -> Any:
     ------
     ImportError
         meshio is not installed.
+
+    >>> import meshio
+    >>> tet = np.eye(4, 3), [(0, 1, 2, 3)]
+    >>> to_meshio(tet, point_data={"heat": np.arange(4.0)}).cells_dict["tetra"].tolist()
+    [[0, 1, 2, 3]]
     """
     meshio = package("meshio", "to_meshio", "meshio")
     points, kinds = _parts(mesh)

@@ -38,7 +38,9 @@ class Csr(NamedTuple):
 
 
 def _is_csr(value: Any) -> bool:
-    """Whether it is a tuple of the members of a Csr, not four rows of numbers."""
+    """Whether it is a tuple of the members of a Csr, not four rows of numbers. Where each has two
+    numbers, it is one if it can be: one row of two entries.
+    """
     if isinstance(value, Csr):
         return True
     if not isinstance(value, tuple) or len(value) != 4:
@@ -47,7 +49,13 @@ def _is_csr(value: Any) -> bool:
         sizes = {len(part) for part in value}
     except TypeError:  # csr_of() names the member
         return True
-    return len(sizes) > 1 or sizes == {2}
+    if sizes != {2}:
+        return len(sizes) > 1
+    (rows, columns), (start, end) = value[3], value[2]
+    try:
+        return (rows, start, end) == (1, 0, 2) and all(0 <= c < columns for c in value[1])
+    except (TypeError, ValueError):  # no numbers
+        return False
 
 
 def csr_of(value: Any, name: str) -> Csr:
@@ -142,7 +150,7 @@ class ContactProblem:
         global:  A v = J^T r + b,  u = J v + w        local:  u = W r + q
 
     Each contact has three rows: normal, tangent 1, tangent 2. Matrices are given as SciPy sparse
-    matrices, as (data, indices, indptr, shape), or as arrays of two axes, and are kept as Csr.
+    matrices, as a tuple (data, indices, indptr, shape), or as arrays of two axes, and are kept as Csr.
 
     system, jacobian : A [kg, kg m^2], symmetric positive definite, and J, (3 contacts, dofs)
     load, velocity_offset : b [N s], w [m/s]
@@ -253,6 +261,13 @@ class ContactSolver:
     """Solves a series of problems; keeps memory, and structure while it stays the same.
 
     Keywords as of solve_contacts(). Not for use by several threads at once.
+
+    >>> solver = ContactSolver(tolerance=1e-9)
+    >>> for speed in (1.0, 2.0):
+    ...     problem = ContactProblem(delassus=np.eye(3), free_velocity=[-speed, 0, 0], friction=[0.5])
+    ...     print(solver.solve(problem).impulse[0, 0].round(6))
+    1.0
+    2.0
     """
 
     def __init__(

@@ -15,7 +15,11 @@ _CUDA = (2, 13)  # numbers of DLPack: plain and managed memory
 
 def available_backends(device: int = 0) -> list[dict[str, Any]]:
     """A dict per back end, of the CUDA device of a number: backend, usable, device, and the reason why
-    it is not usable."""
+    it is not usable.
+
+    >>> [status["usable"] for status in available_backends() if status["backend"] == "cpu"]
+    [True]
+    """
     return list(_core.available_backends(integer_of(device, "device")))
 
 

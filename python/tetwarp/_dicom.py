@@ -195,6 +195,11 @@ def read_dicom(source: Any, *, axes: str, series: str | None = None) -> Volume:
         the files are no series at equal distances; the text says what differs.
     ImportError
         pydicom is not installed.
+
+    >>> import pydicom, tetwarp
+    >>> dose = tetwarp.Volume(np.ones((2, 3, 4)), tetwarp.Grid((2, 3, 4), spacing=(2, 2, 3)))
+    >>> read_dicom(to_rtdose(dose, pydicom.Dataset(), axes="LPS"), axes="RAS")
+    Volume((2, 3, 4) of float64, spacing (2.0, 2.0, 3.0), name 'RTDOSE')
     """
     datasets = _datasets_of(source, series)
     if any(str(d.get("Modality")) == "RTDOSE" for d in datasets):
@@ -225,6 +230,12 @@ def to_rtdose(volume: Volume, like: Any, *, axes: str) -> Any:
         naming the argument.
     ImportError
         pydicom is not installed.
+
+    >>> import pydicom, tetwarp
+    >>> dose = tetwarp.Volume(np.ones((2, 3, 4)), tetwarp.Grid((2, 3, 4)))
+    >>> dataset = to_rtdose(dose, pydicom.Dataset(), axes="LPS")
+    >>> dataset.Modality, dataset.DoseUnits, int(dataset.NumberOfFrames)
+    ('RTDOSE', 'GY', 2)
     """
     pydicom = package("pydicom", "to_rtdose", "pydicom")
     volume = checked_volume(volume, "volume")

@@ -1,4 +1,4 @@
-"""Files: volumes (VTKHDF, NIfTI), meshes (VTKHDF, Gmsh, VTK), contact problems (FCLIB)."""
+"""Files: volumes, meshes, surfaces and contact problems."""
 
 from __future__ import annotations
 
@@ -106,9 +106,17 @@ class VolumeHeader:
 
 
 def read_header(path: Any) -> VolumeHeader:
-    """Reads the header of a volume file.
+    """Reads the header of a volume file of any format.
 
     Raises IoError as read().
+
+    >>> import os, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = os.path.join(folder, "steps.vtkhdf")
+    ...     write(path, [np.zeros((2, 3, 4))] * 2, grid=Grid((2, 3, 4)), times=[0, 0.5])
+    ...     header = read_header(path)
+    >>> header.grid.shape, header.arrays[0]["dtype"], header.times
+    ((2, 3, 4), 'float64', [0.0, 0.5])
     """
     header = _core.volume_header(path_of(path))
     return VolumeHeader(**{**header, "grid": grid_from_core(header["grid"])})
@@ -118,12 +126,17 @@ def read(
     path: Any, *, array: str = "", step: int = 0, axes: str = "ras", labels: bool = False,
     ten_nodes: str = "curved",
 ) -> Any:
-    """Reads a file, by its content.
+    """Reads a file: volumes, VTKHDF files and contact problems by their content, others by the end of
+    the name, in small or capital letters.
 
     Parameters
     ----------
-    path : volume (VTKHDF ImageData, NIfTI), mesh (VTKHDF UnstructuredGrid, .msh, .vtu, .vtk),
-        surface (VTKHDF, .stl, .ply, .obj, .vtp) or contact problem (FCLIB)
+    path : volume: VTKHDF ImageData, NIfTI (also pairs of ``.hdr`` and ``.img``), ``.nrrd``, ``.nhdr``,
+        ``.mha``, ``.mhd``, ``.mgh``, ``.mgz``, ``.vti``, a file or folder of DICOM;
+        mesh: VTKHDF UnstructuredGrid, ``.msh``, ``.vtu``, ``.vtk``, Exodus (``.e``, ``.exo``,
+        ``.ex2``), the steps that a ``.pvd``, ``.vtu.series`` or ``.vtk.series`` lists or that a name
+        with ``*`` matches, the blocks of a ``.vtm``;
+        surface: VTKHDF, ``.stl``, ``.ply``, ``.obj``, ``.vtp``; or contact problem: FCLIB
     array : of a volume file; empty: its active scalars
     step : of a volume file
     axes : ``"ras"`` or ``"lps"``, of vectors and tensors of NIfTI, NRRD and MetaImage files and
@@ -171,6 +184,8 @@ def read(
             _check_unused(kind, of_volumes | turns | of_meshes)
             return ContactProblem(**_core.read_contact_problem(name))
         _check_unused("volume", of_meshes)
+        if not _core.has_component_axes(name):  # of others the library refuses scalars
+            _check_unused("volume that is no NIfTI, NRRD or MetaImage file", turns)
         samples, grid, read_name, nifti = _core.read_volume(
             name, array, number, axes, are_labels)
     except _core.MissingLibrary as error:
@@ -180,8 +195,6 @@ def read(
         check_default(name, "axes", axes, "ras")
         check_default(name, "labels", are_labels, False)
         return read_image(name, array, error)
-    if not _core.has_component_axes(name):  # of others the library refuses scalars
-        _check_unused("volume that is no NIfTI, NRRD or MetaImage file", turns)
     return Volume(samples, grid_from_core(grid), read_name, nifti)
 
 

@@ -28,7 +28,8 @@ _NO_MASK = np.empty(0, np.uint8)
 def _source_grid(source: Any, spacing: Any, origin: Any, direction: Any, affine: Any) -> Grid:
     """The grid of a Grid, of what has one, or of an array with the usual keywords."""
     if isinstance(source, (np.ndarray, list, tuple)) or is_foreign(source):
-        shape = tuple(source.shape if is_foreign(source) else array_of(source, "source").shape)
+        array: Any = source if is_foreign(source) else array_of(source, "source")
+        shape = tuple(array.shape)
         if len(shape) not in (3, 4):
             raise ValueError(f"source: expected shape (z, y, x) or (z, y, x, c), got {shape}")
         return make_grid(shape[:3], spacing, origin, direction, affine)

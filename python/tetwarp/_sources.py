@@ -47,7 +47,9 @@ def default_value_of(value: Any, sources: Sequence[Any]) -> float:
 
 
 def warn_of_rounding(number: float, sources: Sequence[Any]) -> None:
-    """A warning for each type of samples in which a default value is another number."""
+    """A warning for each type of samples in which a default value is another number; not of fractions
+    in floats, which the nearest one stands for as for every sample.
+    """
     for name in dict.fromkeys(map(type_of, sources)):
         if np.dtype(name).kind in "iu":
             limits = np.iinfo(name)
@@ -56,9 +58,10 @@ def warn_of_rounding(number: float, sources: Sequence[Any]) -> None:
         else:
             with np.errstate(over="ignore"):
                 kept = float(np.float64(number).astype(name))
-            fits = bool(np.isfinite(kept) == np.isfinite(number))
+            is_whole = bool(np.isfinite(number)) and number.is_integer()
+            fits = kept == number if is_whole else bool(np.isfinite(kept) == np.isfinite(number))
         if not fits:
-            warn(f"default_value: {number:g} does not fit {name}, {kept:g} is stored")
+            warn(f"default_value: {number:.15g} does not fit {name}, {kept:.15g} is stored")
 
 
 def quantities_of(quantity: Any, count: int) -> list[str]:

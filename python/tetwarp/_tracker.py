@@ -293,7 +293,8 @@ class ContactTracker:
         return filled
 
     def end_step(
-        self, solution: ContactSolution | np.ndarray, bodies: Sequence[Any], *, velocity: Any = None
+        self, solution: ContactSolution | np.ndarray, bodies: Sequence[Any], *, velocity: Any = None,
+        pressing: Any = None,
     ) -> AdhesionStep:
         """Ends the step: bonds stretch, grow or break, impulses are kept for the next start.
 
@@ -302,6 +303,9 @@ class ContactTracker:
         solution : of the problem of fill(), or its impulses (n, 3), along the axes [N s]
         bodies : as in begin_step(), at the end of the step
         velocity : (n, 3) of the contacts where impulses are given [m/s]; None: 0
+        pressing : (n,) normal impulse that presses on the area of each contact and so forms its bond
+            [N s], where contacts without an area stand beside those that have that of a surface, and
+            take a part of what presses on it; None: the contact's own
 
         Raises
         ------
@@ -322,7 +326,9 @@ class ContactTracker:
             count = impulse.shape[0] if np.ndim(impulse) else 0
         impulse = _column_of(impulse, "solution: impulse", count, 3, float)
         velocity = _column_of(velocity, "velocity", count, 3, float)
-        step = self._tracker.end_step(impulse, velocity, _bodies_of(bodies))
+        pressed = np.empty(0) if pressing is None else _column_of(
+            pressing, "pressing", count, 1, float)
+        step = self._tracker.end_step(impulse, velocity, pressed, _bodies_of(bodies))
         self._count = None
         return AdhesionStep(step["intensity"], step["gap"], step["debonded"].view(bool))
 

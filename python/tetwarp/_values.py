@@ -8,9 +8,13 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
+
+_MOST_AXES = 64  # of an array of NumPy
+_NUMBERS = {int, float, bool, complex}
 
 
 def shown(value: Any) -> str:
@@ -19,12 +23,26 @@ def shown(value: Any) -> str:
     return text if len(text) <= 200 else f"{text[:200]}..."
 
 
+def _is_list(kind: type) -> bool:
+    return issubclass(kind, Sequence) and not issubclass(kind, (str, bytes, range))
+
+
 def is_masked(value: Any) -> bool:
     """Whether elements of an array, or of one in a list, are masked: NumPy would drop the mask."""
     if isinstance(value, np.ndarray):
         return np.ma.is_masked(value)
-    is_list = isinstance(value, Sequence) and not isinstance(value, (str, bytes, range))
-    return is_list and any(map(is_masked, value))
+    items = value if _is_list(type(value)) else ()
+    for _ in range(_MOST_AXES):  # whole levels of lists at a time, which is quick for many numbers
+        kinds = set(map(type, items))
+        if kinds <= _NUMBERS:
+            return False
+        if any(issubclass(kind, np.ma.MaskedArray) for kind in kinds) and any(
+                isinstance(item, np.ma.MaskedArray) and np.ma.is_masked(item) for item in items):
+            return True
+        lists = {kind for kind in kinds if _is_list(kind)}
+        inner = items if kinds == lists else [item for item in items if type(item) in lists]
+        items = list(chain.from_iterable(inner))
+    return False  # NumPy refuses it
 
 
 def _is_unicode(text: str) -> bool:

@@ -6,6 +6,7 @@ Positions are in RAS, the world of Slicer. Matrices are 4 x 4 arrays, from voxel
 
 import numpy as np
 import tetwarp
+from vtkmodules.numpy_interface.dataset_adapter import WrapDataObject
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
     VTK_HEXAHEDRON,
@@ -26,7 +27,7 @@ def mesh_of(grid):
     """Nodes and cells of a vtkUnstructuredGrid of tetrahedra or hexahedra; other cells of three
     dimensions are an error, cells of fewer are left out.
     """
-    kinds = vtk_to_numpy(grid.GetCellTypesArray())
+    kinds = np.asarray(WrapDataObject(grid).CellTypes)
     cells = grid.GetCells()
     offsets = vtk_to_numpy(cells.GetOffsetsArray())
     corners = vtk_to_numpy(cells.GetConnectivityArray())
@@ -85,7 +86,7 @@ def fill_grid_transform(transform, dimensions, ijk_to_ras, grid, deformed, **opt
     dimensions : i, j, k of its grid, at best those of the volume
     options : keywords of tetwarp.displacement_field, such as outside and falloff
 
-    Returns tetwarp.Field.
+    Returns tetwarp.Field, whose values are those of the transform.
     """
     volume_grid = tetwarp.Grid.from_affine(tuple(reversed(dimensions)), ijk_to_ras)
     field = tetwarp.displacement_field(*mesh_of(grid), deformed, reference=volume_grid, **options)
@@ -93,7 +94,7 @@ def fill_grid_transform(transform, dimensions, ijk_to_ras, grid, deformed, **opt
     displacements.SetDimensions(dimensions)
     displacements.SetSpacing(volume_grid.spacing)
     displacements.SetOrigin(volume_grid.origin)
-    vectors = numpy_to_vtk(field.values.reshape(-1, 3), deep=True)
+    vectors = numpy_to_vtk(field.values.reshape(-1, 3))  # which VTK keeps
     vectors.SetName("displacement")
     displacements.GetPointData().SetScalars(vectors)
     directions = vtkMatrix4x4()
