@@ -96,6 +96,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/touch/test_contact_names.cpp
     tests/simulate/touch/test_flat_edges.cpp
     tests/simulate/touch/test_pair_contacts.cpp
+    tests/simulate/touch/test_pressing_impulses.cpp
     tests/simulate/touch/test_rigid_patches.cpp
     tests/simulate/touch/test_tracker_places.cpp
     tests/simulate/touch/test_vertex_contacts.cpp

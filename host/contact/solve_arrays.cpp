@@ -129,6 +129,24 @@ void complete(const ContactStructure& structure, EngineResult& result) {
     }
   }
 }
+
+/// The report and status of a solve whose results never left the device.
+/// @param found  its outcomes are moved from
+void set_report(const ContactStructure& structure,
+                const ContactOptions& options,
+                const SolveBudget& budget,
+                DeviceRun& found,
+                ContactSolution& solution) {
+  EngineResult result;
+  result.outcomes = std::move(found.outcomes);
+  result.savings = found.end.savings;
+  result.updates_skipped = found.end.updates_skipped;
+  complete(structure, result);
+  const WholeResidual whole = whole_residual(result.outcomes);
+  fill_report(result, whole, options.measure, solution.report);
+  solution.report.residual.balance = found.end.balance;
+  set_status(result, whole, options, budget, solution);
+}
 }  // namespace
 
 void ContactSolver::set_structure(const ContactProblem& problem) {
@@ -170,17 +188,9 @@ ContactReport ContactSolver::solve(const ContactArrays& arrays, const ContactTar
                                          resident_problem(arrays, target, pattern), found.outcomes);
     if (found.end.is_solved) {
       budget.rethrow();
-      EngineResult result;
-      result.outcomes = std::move(found.outcomes);
-      result.savings = found.end.savings;
-      result.updates_skipped = found.end.updates_skipped;
-      complete(structure, result);
       ContactSolution solution;
       s.describe(pattern, solution.report);
-      const WholeResidual whole = whole_residual(result.outcomes);
-      fill_report(result, whole, s.options.measure, solution.report);
-      solution.report.residual.balance = found.end.balance;
-      set_status(result, whole, s.options, budget, solution);
+      set_report(structure, s.options, budget, found, solution);
       solution.report.total_seconds = solution.report.solve_seconds = seconds_since(start);
       return solution.report;
     }

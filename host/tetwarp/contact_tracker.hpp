@@ -216,9 +216,9 @@ class TETWARP_EXPORT ContactTracker {
   /// @param solution  of the problem that fill() completed
   /// @param places    of all bodies at the end of the step; vertices are read during the call
   /// @param pressing  normal impulse that presses on the area of each contact and so forms bonds,
-  ///                  [contact_count] [N s]; empty: that of the contact itself. Where contacts
-  ///                  without area stand beside those that have the area of a surface, these carry
-  ///                  less than what presses on it.
+  ///                  [contact_count] [N s]; empty: that of the contact itself, for contacts that
+  ///                  all have an area. Where some have none, a part of the force on a surface is
+  ///                  theirs, and the caller spreads it over the areas.
   /// @throws std::logic_error       no step has begun, or it has ended already
   /// @throws std::invalid_argument  a body of a record has no pose, a pose, an impulse, what
   ///                                presses or a velocity is not finite, a rotation is not of

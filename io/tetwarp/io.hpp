@@ -318,7 +318,9 @@ TETWARP_IO_EXPORT bool has_image_name(const std::string& path);
 
 /// What a series loses of its times by the format of its name, in one line with a remedy: NIfTI,
 /// NRRD and MetaImage keep a first time and an interval, FreeSurfer's images none, and programs
-/// that read VTKHDF want times that increase. Empty: nothing.
+/// that read VTKHDF want times that increase.
+/// @param output  the name
+/// @returns the line, empty if nothing is lost
 TETWARP_IO_EXPORT std::string times_warning(const std::string& output,
                                             const std::vector<double>& times);
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 #include <tetwarp/io.hpp>
 #include <utility>
 #include <vector>
@@ -16,15 +17,26 @@ namespace tetwarp::test {
 namespace {
 using Names = std::vector<std::string>;
 
+/// Until a run has written to `file` four times, which it does at most twice a second, or a minute
+/// has passed.
+void wait_for_writes(const fs::path& file) {
+  fs::file_time_type last;
+  for (int tries = 0, writes = 0; tries < 1200 && writes < 4; ++tries) {
+    usleep(50'000);
+    std::error_code missing;
+    const fs::file_time_type time = fs::last_write_time(file, missing);
+    if (missing || time == last) continue;
+    last = time;
+    ++writes;
+  }
+}
+
 TEST(Simulate, LeavesReadableFilesWhenInterrupted) {
   const SimulateScene scene;
   RunningCommand command(scene, {"simulate", "scene.json", "-o", "out", "--steps", "100000000",
                                  "--checkpoint", "state"});
   const std::string series = scene.in("out", "series.h5");
-  for (int tries = 0; tries < 600 && !fs::exists(scene.in("out", "series.h5")); ++tries) {
-    usleep(50'000);
-  }
-  usleep(1'500'000);
+  wait_for_writes(scene.in("out", "beam.vtkhdf"));
   const auto start = std::chrono::steady_clock::now();
 
   kill(command.process(), SIGINT);
@@ -76,10 +88,7 @@ TEST(Simulate, LeavesAllStepsBeforeOneThatFails) {
 TEST(Simulate, LeavesReadableFilesWhenKilled) {
   const SimulateScene scene;
   RunningCommand command(scene, {"simulate", "scene.json", "-o", "out", "--steps", "100000000"});
-  for (int tries = 0; tries < 600 && !fs::exists(scene.in("out", "series.h5")); ++tries) {
-    usleep(50'000);
-  }
-  usleep(1'500'000);
+  wait_for_writes(scene.in("out", "beam.vtkhdf"));
 
   kill(command.process(), SIGKILL);
   EXPECT_EQ(command.wait().exit_code, 137);
@@ -96,15 +105,14 @@ TEST(Simulate, GoesOnInItsFilesAfterItWasKilled) {
       "state",    "--checkpoint-every", "7"};
   {
     RunningCommand command(scene, words);
-    for (int tries = 0; tries < 600 && !fs::exists(scene / "state"); ++tries) usleep(50'000);
-    usleep(300'000);
+    wait_for_writes(scene / "state");
     kill(command.process(), SIGKILL);
     EXPECT_EQ(command.wait().exit_code, 137);
   }
   Names again = words;
   again.insert(again.end(), {"--restart", "state"});
   RunningCommand command(scene, again);
-  usleep(1'500'000);
+  wait_for_writes(scene.in("out", "beam.vtkhdf"));
   kill(command.process(), SIGINT);
   EXPECT_EQ(command.wait().exit_code, 130);
 

@@ -60,14 +60,6 @@ Volume by_mesh(const Volume& source, const AffineTransform& affine, const WarpOp
   return warp(source, mesh, deformed, options).volume;
 }
 
-double largest_difference(const Volume& a, const Volume& b) {
-  const std::vector<double> x = numbers_of(a), y = numbers_of(b);
-  EXPECT_EQ(x.size(), y.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, std::abs(x[i] - y[i]));
-  return largest;
-}
-
 const std::array<std::array<std::int64_t, 3>, 7> sizes{
     {{1, 1, 1}, {1, 9, 5}, {7, 3, 4}, {8, 8, 8}, {9, 17, 3}, {31, 5, 6}, {33, 10, 9}}};
 

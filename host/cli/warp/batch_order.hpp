@@ -16,13 +16,13 @@ namespace tetwarp::cli {
 /// Canonical paths of the files of a job.
 struct JobFiles {
   std::set<std::string> reads;
-  /// As planned from the files that are there: outputs, with --provenance the files beside them,
-  /// and the report. Of a job that cannot be planned, or has an error, the output that it names.
+  /// Outputs, with --provenance the files beside them, and the report, as planned from the inputs
+  /// that are there; of a job that cannot be planned, or has an error, the output that it names.
   std::set<std::string> writes;
-  bool is_planned = false;         ///< else it may write more: see `outputs`
-  std::vector<SplitName> outputs;  ///< names that may have a step and an array before the extension
-  /// That it may write to files of their own; none: not known.
-  std::optional<std::set<std::string>> arrays;
+  /// False: the job may also write each of `outputs` with a step and an array before its extension.
+  bool is_planned = false;
+  std::vector<SplitName> outputs;
+  std::optional<std::set<std::string>> arrays;  ///< in such names; none: any
 };
 
 /// Of each job. Where an earlier job writes what a job reads, the plan of that job is not trusted.
@@ -40,8 +40,9 @@ struct Wait {
                       ///< writes what the waiting one overwrites
 };
 
-/// Of each job the earlier ones that share a file with it that one of the two writes, ascending: so
-/// ordered, jobs beside each other write what they write one after the other.
+/// @returns of each job the earlier ones, ascending, that write a file which it reads or writes, or
+///          read one which it writes. Jobs that wait for these may run beside each other and leave
+///          the files that they leave one after the other.
 std::vector<std::vector<Wait>> waits_of_jobs(const std::vector<JobFiles>& files);
 
 }  // namespace tetwarp::cli

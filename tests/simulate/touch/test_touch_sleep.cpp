@@ -99,7 +99,7 @@ TEST(Sleep, ACheckpointOfSleepGoesOnBitForBit) {
   EXPECT_EQ(first.checkpoint(), second.checkpoint());
 }
 
-/// A box on a table, until the table goes away.
+/// Bytes of a checkpoint with sleeping bodies, changed or cut at random.
 TEST(Sleep, GoesOnFromADamagedCheckpointOrRefusesIt) {
   Simulator simulator(stack_and_flying_ball(true));
   run(simulator, 100);
