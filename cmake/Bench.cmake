@@ -33,6 +33,7 @@ add_executable(tetwarp_bench
   bench/warp/main.cpp
   bench/warp/overlap_rows.cpp
   bench/warp/paper_rows.cpp
+  bench/warp/points_rows.cpp
   bench/warp/region_rows.cpp
   bench/warp/resident_rows.cpp
   bench/warp/series_rows.cpp

@@ -72,17 +72,19 @@ find_program(TETWARP_PYTHON3 python3)
 if(TETWARP_PYTHON3)
   add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
-  # Every fifth of the 48 orientations of a grid; all as `long`.
-  foreach(check axes images transforms)
+  # Of the 48 orientations of a grid every fifth or so; all as `long`.
+  set(checks axes dicom fields images transforms)
+  set(shares 5 7 24 5 5)
+  foreach(check every IN ZIP_LISTS checks shares)
     set(run ${TETWARP_PYTHON3} ${PROJECT_SOURCE_DIR}/tests/io/check_${check}.py
       $<TARGET_FILE:tetwarp_command>)
-    add_test(NAME ${check} COMMAND ${run} 5)
+    add_test(NAME ${check} COMMAND ${run} ${every})
     add_test(NAME ${check}_of_all_orientations COMMAND ${run})
     set_tests_properties(${check} PROPERTIES LABELS io SKIP_RETURN_CODE 77)
     set_tests_properties(${check}_of_all_orientations PROPERTIES LABELS long SKIP_RETURN_CODE 77)
   endforeach()
-  add_test(NAME dicom COMMAND ${TETWARP_PYTHON3}
-    ${PROJECT_SOURCE_DIR}/tests/io/check_dicom.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME foreign_meshes COMMAND ${TETWARP_PYTHON3}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_foreign_meshes.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME itk_spaces COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_itk_spaces.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME labels COMMAND ${TETWARP_PYTHON3}
@@ -93,7 +95,7 @@ if(TETWARP_PYTHON3)
     ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME film COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader dicom itk_spaces labels walk simulation film PROPERTIES
+  set_tests_properties(vtk_reader foreign_meshes itk_spaces labels walk simulation film PROPERTIES
     LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)

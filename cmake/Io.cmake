@@ -39,7 +39,8 @@ tetwarp_sources(tetwarp_io io/scene
   scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_files.cpp
   scene_geometry.cpp scene_json.cpp scene_loft.cpp scene_motion.cpp transfer_file.cpp)
 tetwarp_sources(tetwarp_io io/transforms
-  field_file.cpp fsl_field.cpp itk_transform.cpp itk_transform_files.cpp transform_file.cpp)
+  field_file.cpp fsl_field.cpp itk_flat_transform.cpp itk_transform.cpp itk_transform_files.cpp
+  transform_file.cpp)
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp itk_space.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp output_check.cpp
   times_warning.cpp volume_file.cpp)

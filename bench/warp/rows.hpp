@@ -137,4 +137,12 @@ void add_feature_rows(const Selection& selection);
 ///   field_ns_per_covered  what the field adds [ns]
 void add_field_rows(const Selection& selection);
 
+/// points/WORKLOAD/COUNT: map_points() of points in no order, from rest to the deformed positions
+/// and back, where each must be again. A call makes the search for owners, too.
+///
+///   points_per_second  of moves, of which each repetition makes two per point
+///   processor_ns       processor time of a move, of all threads together, least [ns]
+///   max_error          largest distance from where a point began [world]
+void add_point_rows(const Selection& selection);
+
 }  // namespace tetwarp::bench

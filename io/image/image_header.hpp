@@ -26,6 +26,10 @@ struct ImageHeader {
   bool is_packed = false;          ///< by zlib or gzip
   std::int64_t skipped = 0;        ///< bytes before the samples in what is packed
   bool is_big_endian = false;
+  /// Of NRRD, in lower case: "resampling" or "modeling", the direction of displacements, or another
+  /// word of the file; empty where it does not tell.
+  std::string field_type = {};
+  std::string component_kind = {};         ///< of NRRD's axis of components, in lower case
   std::vector<std::string> left_out = {};  ///< other fields of the header
 
   std::size_t voxel_bytes() const { return static_cast<std::size_t>(components) * size_of(type); }

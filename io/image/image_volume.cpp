@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/component_facts.hpp"
 #include "io/files/memory.hpp"
 #include "io/files/read_check.hpp"
 #include "io/files/scratch_file.hpp"
@@ -128,6 +129,9 @@ void swap_bytes(std::byte* samples, std::size_t size, std::size_t count) {
 ArrayHeader array_of(const std::string& path, const ImageHeader& header, Axes axes) {
   ArrayHeader array{image_array, header.type, header.components};
   if (axes == Axes::ras) return array;
+  if (std::ranges::count(header.left_out, frame_fact) > 0) {
+    throw IoError(path, frame_fact, "turns the components, which is not read; leave out --axes");
+  }
   array.nifti = default_nifti_facts(header.components);
   array.nifti->component_axes = axes;
   static_cast<void>(image_component_map(path, header.type, header.components, axes));

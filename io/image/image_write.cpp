@@ -81,6 +81,9 @@ ImageHeader header_of(const std::string& path,
   }
   header.type = array.type;
   header.components = array.components;
+  if (array.is_itk_field) {
+    header.field_type = array.name == "tetwarp_forward" ? "modeling" : "resampling";
+  }
   header.is_packed = level > 0;
   const std::string samples = samples_of(path, header.is_packed);
   if (samples != path) header.data_file = std::filesystem::path(samples).filename().string();

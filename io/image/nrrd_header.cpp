@@ -15,6 +15,7 @@
 #include <tetwarp/error.hpp>
 
 #include "host/base/point3.hpp"
+#include "io/files/component_facts.hpp"
 #include "io/image/nrrd_words.hpp"
 
 namespace tetwarp {
@@ -66,7 +67,7 @@ class NrrdReader {
       if (line[0] == '#') continue;
       const std::size_t pair = line.find(":="), colon = line.find(": ");
       if (pair != std::string::npos && (colon == std::string::npos || pair < colon)) {
-        header_.left_out.push_back(line.substr(0, pair));
+        read_pair(line.substr(0, pair), trimmed(line.substr(pair + 2)));
       } else if (colon != std::string::npos) {
         const std::string written = line.substr(0, colon);
         if (!fields_.emplace(nrrd_field(written), trimmed(line.substr(colon + 2))).second) {
@@ -77,6 +78,14 @@ class NrrdReader {
       }
     }
     header_end_ = offset;
+  }
+
+  /// A key of 3D Slicer; others are left out.
+  void read_pair(const std::string& key, const std::string& value) {
+    if (lower_case(key) != nrrd_field_type) return header_.left_out.push_back(key);
+    if (!header_.field_type.empty()) fail(key, "is there twice in its header");
+    header_.field_type = value.empty() ? "empty" : lower_case(value);
+    if (header_.field_type != "resampling") header_.left_out.push_back(key);  // which is usual
   }
 
   std::optional<std::string> take(const std::string& name) {
@@ -161,6 +170,10 @@ class NrrdReader {
                           " components, expected 1 to 9; move the axis of a series to the end");
       }
       header_.components = static_cast<int>(sizes_[0]);
+      if (has_kinds) header_.component_kind = kinds[0];
+      if (header_.component_kind.ends_with("symmetric-matrix")) {
+        header_.left_out.emplace_back(order_fact);
+      }
     }
     if (is_last_step) read_steps();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -221,12 +234,15 @@ class NrrdReader {
 
   void read_axes() {
     std::array<bool, 3> is_negated{false, false, false};
-    if (const auto space = take("space")) {
+    const auto space = take("space");
+    if (space) {
       const auto known = nrrd_space(*space);
       if (!known) fail("space", "'" + *space + "' is not read, expected one of RAS, LAS and LPS");
       is_negated = *known;
     }
-    take("space dimension");
+    // ITK's images of two axes name no space.
+    const bool is_flat = take("space dimension") == "2" && !space && of_space_ == 2;
+    if (is_flat) is_negated = {true, true, false};
     std::array<Point3, 3> steps{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     Point3 origin{0, 0, 0};
     const bool has_directions = fields_.contains("space directions");
@@ -249,8 +265,10 @@ class NrrdReader {
       origin = first_centers();
     }
     for (const char* const used : {"spacings", "axis mins", "axis maxs", "centers"}) take(used);
-    if (of_space_ == 2) steps[2] = unit(cross(steps[0], steps[1]));
+    if (of_space_ == 2 && !is_flat) steps[2] = unit(cross(steps[0], steps[1]));
     if (const auto given = take("space origin")) origin = vector(*given, "space origin");
+    const std::string frame = fields_.contains(frame_fact) ? fields_[frame_fact] : "";
+    if (is_unit_frame(frame)) take(frame_fact);  // as without it
     try {
       set_image_axes(steps, origin, is_negated, header_.grid);
     } catch (const std::invalid_argument& error) {
@@ -337,7 +355,11 @@ std::string nrrd_header_text(const ImageHeader& header) {
   return text + "\nkinds: " + first + "domain domain domain" + (has_steps ? " list" : "") +
          "\nendian: little\nencoding: " + (header.is_packed ? "gzip" : "raw") +
          "\nspace origin: (" + lps(0, grid.origin[0]) + "," + lps(1, grid.origin[1]) + "," +
-         lps(2, grid.origin[2]) + ")\n\n";
+         lps(2, grid.origin[2]) + ")\n" +
+         (header.field_type.empty()
+              ? ""
+              : std::string(nrrd_field_type) + ":=" + header.field_type + "\n") +
+         "\n";
 }
 
 }  // namespace tetwarp

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
+#include <sstream>
+#include <vector>
 
 namespace tetwarp {
 namespace {
@@ -90,6 +93,24 @@ const char* nrrd_type_name(PixelType type) {
   return std::find_if(std::begin(type_names), std::end(type_names),
                       [&](const TypeName& entry) { return type == entry.type; })
       ->name;
+}
+
+bool is_unit_frame(const std::string& frame) {
+  std::string text = frame;
+  for (char& c : text) c = c == '(' || c == ')' || c == ',' ? ' ' : c;
+  std::istringstream words(text);
+  const std::vector<double> entries{std::istream_iterator<double>(words), {}};
+  const std::size_t axes = entries.size() == 4 ? 2 : 3;
+  for (std::size_t n = 0; n < entries.size(); ++n) {
+    if (entries[n] != (n % (axes + 1) == 0 ? 1 : 0)) return false;
+  }
+  return words.eof() && entries.size() == axes * axes;
+}
+
+bool may_be_displacement(const std::string& kind) {
+  static const std::set<std::string> kinds{"",     "vector", "2-vector", "3-vector",
+                                           "list", "none",   "???"};
+  return kinds.contains(kind);
 }
 
 std::optional<std::array<bool, 3>> nrrd_space(const std::string& written) {

@@ -245,12 +245,17 @@ ImportedMesh read_exodus(const std::string& path, MeshImportOptions options) {
   if (!options.displacement) options.displacement = exodus_displacement(*reader);
   vtkInformation& facts = *reader->GetOutputInformation(0);
   const int count = facts.Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
-  const double* const times = facts.Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+  // A copy: updates of the reader free its own list.
+  std::vector<std::optional<double>> times;
+  for (int step = 0; step < count; ++step) {
+    times.emplace_back(facts.Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), step));
+  }
+  if (times.empty()) times.emplace_back();
   VtkSteps steps(options);
   int others = 0;
-  for (int step = 0; step < std::max(1, count); ++step) {
-    if (count > 0) {
-      reader->UpdateTimeStep(times[step]);
+  for (const std::optional<double>& time : times) {
+    if (time) {
+      reader->UpdateTimeStep(*time);
     } else {
       reader->Update();
     }
@@ -258,7 +263,7 @@ ImportedMesh read_exodus(const std::string& path, MeshImportOptions options) {
     if (!is_good || reader->GetOutput() == nullptr) check_grid(path, nullptr);
     others = 0;
     const GridPointer grid = with_shared_points(path, grids_of(*reader->GetOutput(), others));
-    steps.add(path, *grid, count > 0 ? std::optional(times[step]) : std::nullopt);
+    steps.add(path, *grid, time);
   }
   add_other_blocks(others, steps.mesh());
   return steps.take();

@@ -22,6 +22,9 @@ struct TransformFile {
   std::string
       convention;  ///< for a line to print: "displacements along LPS axes in mm (intent ...)"
   bool ends_with_field = false;  ///< what is beyond the field's grid has no place in the source
+  /// By link of a chain, of another transform one: whether its inverse is meant, because the file
+  /// says that it leads from the source to the output. Empty: of none.
+  std::vector<bool> is_inverted = {};
 };
 
 /// What the numbers of a warp field of FSL are.
@@ -46,11 +49,14 @@ struct TransformReadOptions {
   std::optional<Point3> world = {};
   /// Of a displacement field with several steps; without it such a file is an error.
   std::optional<std::int64_t> step = {};
+  /// Reads transforms whose inverse is meant; see TransformFile::is_inverted. Else they are an
+  /// error.
+  bool takes_inverted = false;
 };
 
 /// True for what read_transform() reads: names that end in .tfm, .txt or .mat, HDF5 files of ITK,
-/// images (NIfTI, NRRD, MetaImage) of three components, warp fields of FSL, and volumes with an
-/// array `tetwarp_displacement`.
+/// images (NIfTI, NRRD, MetaImage) of three components or, of a single slice, two, warp fields of
+/// FSL, and volumes with an array `tetwarp_displacement`.
 TETWARP_IO_EXPORT bool is_transform_file(const std::string& path,
                                          const TransformReadOptions& options = {});
 
@@ -65,17 +71,20 @@ TETWARP_IO_EXPORT std::int64_t transform_step_count(const std::string& path,
                                                     const TransformReadOptions& options = {});
 
 /// Reads a transform from positions of the output to positions in the source, as resamplers take
-/// it, and turns it to RAS.
+/// it, and turns it to RAS. Those of two dimensions move nothing along the third axis, and are the
+/// same in all planes across it.
 ///
 /// - ITK's text (.tfm, .txt), MATLAB (.mat) and HDF5 files: affine, rigid, similarity, scale and
 ///   translation transforms, displacement fields, cubic B-splines and composites of these, in LPS
-///   and mm
+///   and mm. The inverse is meant of 3D Slicer's InverseDisplacementFieldTransform and
+///   InverseBSplineTransform
 /// - NIfTI displacement fields. The intent code states the axes of the components: VECTOR is LPS
 ///   and mm (ITK, ANTs), DISPVECT is RAS in the header's unit, VECTOR named NREG_TRANS is
 ///   NiftyReg's: displacements or positions in RAS. Any other needs `axes`
 /// - Warp fields of FSL (intent 2006): relative or absolute, in scaled voxels of the field's and
 ///   the image's grid
-/// - NRRD files and MetaImages of three components: LPS and mm, as ITK and 3D Slicer write them
+/// - NRRD files and MetaImages of three components: LPS and mm, as ITK and 3D Slicer write them.
+///   With NRRD's key `displacement field type` of `modeling` the inverse is meant
 /// - the array `tetwarp_displacement` of a VTKHDF volume, as `tetwarp warp` writes it
 /// @throws IoError  on other transforms, files that do not tell their convention, damaged files
 TETWARP_IO_EXPORT TransformFile read_transform(const std::string& path,

@@ -8,10 +8,13 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <tetwarp/error.hpp>
 #include <tetwarp/itk_space.hpp>
 #include <utility>
+
+#include "io/transforms/itk_flat_transform.hpp"
 
 namespace tetwarp {
 namespace {
@@ -114,21 +117,11 @@ std::string listed_kinds() {
 /// Throws about a type that is not read.
 [[noreturn]] void refuse(const std::string& path, const std::string& type) {
   throw IoError(path, type,
-                "is no transform of three dimensions that is read; these are " + listed_kinds() +
-                    ", DisplacementFieldTransform, cubic BSplineTransform and composites of them. "
-                    "Convert others to a displacement field, for example by SimpleITK's "
+                "is no transform that is read; of three dimensions these are " + listed_kinds() +
+                    ", DisplacementFieldTransform, cubic BSplineTransform and composites of them, "
+                    "of two Euler2DTransform, Similarity2DTransform and those without 3D. Convert "
+                    "others to a displacement field, for example by SimpleITK's "
                     "TransformToDisplacementField");
-}
-
-void check_count(const std::string& path,
-                 const std::string& type,
-                 std::size_t count,
-                 std::size_t expected,
-                 const char* what) {
-  if (count == expected) return;
-  throw IoError(
-      path, type,
-      "expected " + std::to_string(expected) + " " + what + ", got " + std::to_string(count));
 }
 
 /// Between positions that are multiplied by a factor, as scaled() multiplies those of a grid.
@@ -148,11 +141,11 @@ AffineTransform affine_of(const std::string& path,
                           const ItkTransform& transform,
                           const Kind& kind) {
   const std::vector<double>& p = transform.parameters;
-  check_count(path, transform.type, p.size(), kind.parameter_count, "parameters");
+  check_itk_count(path, transform.type, p.size(), kind.parameter_count, "parameters");
   AffineTransform affine{kind.matrix(transform), {0, 0, 0}};
   Point3 center{0, 0, 0};
   if (!transform.fixed.empty() && transform.fixed.size() < 3) {
-    check_count(path, transform.type, transform.fixed.size(), 3, "fixed parameters");
+    check_itk_count(path, transform.type, transform.fixed.size(), 3, "fixed parameters");
   }
   if (!transform.fixed.empty()) std::copy_n(transform.fixed.begin(), 3, center.begin());
   const Point3 turned = product(affine.matrix, center);
@@ -166,8 +159,8 @@ AffineTransform affine_of(const std::string& path,
 /// The grid of fixed parameters: sizes, origin, spacing, direction by rows.
 Grid grid_of(const std::string& path, const ItkTransform& transform) {
   const std::vector<double>& f = transform.fixed;
-  check_count(path, transform.type, f.size(), 18,
-              "fixed parameters (size, origin, spacing, direction)");
+  check_itk_count(path, transform.type, f.size(), 18,
+                  "fixed parameters (size, origin, spacing, direction)");
   Grid grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!(f[axis] >= 1 && f[axis] <= 0x1p30) || f[axis] != std::floor(f[axis])) {
@@ -185,7 +178,7 @@ Grid grid_of(const std::string& path, const ItkTransform& transform) {
     throw IoError(path, transform.type, error.what());
   }
   const auto expected = 3 * static_cast<std::size_t>(grid.voxel_count());
-  check_count(
+  check_itk_count(
       path, transform.type,
       transform.read ? static_cast<std::size_t>(transform.stored) : transform.parameters.size(),
       expected, "parameters, three per grid point");
@@ -275,11 +268,13 @@ BSplineTransform spline_of(const std::string& path,
 struct SingleLink {
   SingleTransform transform;
   FieldReader field;
+  bool is_inverted = false;  ///< see TransformFile
 };
 
 /// @param factor  of positions and displacements
 SingleLink single_of(const std::string& path, const ItkTransform& transform, const Point3& factor) {
-  const std::string name = transform.type.substr(0, transform.type.find('_'));
+  const std::string name = itk_class(transform.type);
+  const bool is_inverted = name.starts_with("Inverse");  // a type of 3D Slicer
   if (!transform.type.ends_with("_3_3")) refuse(path, transform.type);
   if (is_itk_field(transform.type)) {
     const Grid grid = grid_of(path, transform);
@@ -288,9 +283,12 @@ SingleLink single_of(const std::string& path, const ItkTransform& transform, con
       field->read(region, displacement);
     };
     return {DisplacementField{scaled(grid, factor), {}},
-            {.read = read, .chunk_bytes = field->chunk_bytes()}};
+            {.read = read, .chunk_bytes = field->chunk_bytes()},
+            is_inverted};
   }
-  if (name == "BSplineTransform") return {spline_of(path, transform, factor), {}};
+  if (name == "BSplineTransform" || name == "InverseBSplineTransform") {
+    return {spline_of(path, transform, factor), {}, is_inverted};
+  }
   const Kind* const kind = std::find_if(std::begin(kinds), std::end(kinds),
                                         [&](const Kind& known) { return name == known.name; });
   if (kind == std::end(kinds)) refuse(path, transform.type);
@@ -313,8 +311,27 @@ void append(std::vector<SingleLink>& links, SingleLink next) {
 }
 }  // namespace
 
+std::string itk_class(const std::string& type) {
+  return type.substr(0, type.find('_'));
+}
+
+void check_itk_count(const std::string& path,
+                     const std::string& type,
+                     std::size_t count,
+                     std::size_t expected,
+                     const char* what) {
+  if (count == expected) return;
+  throw IoError(
+      path, type,
+      "expected " + std::to_string(expected) + " " + what + ", got " + std::to_string(count));
+}
+
 bool is_itk_field(const std::string& type) {
-  return type.substr(0, type.find('_')).ends_with("DisplacementFieldTransform");
+  static const std::set<std::string> names{"DisplacementFieldTransform",
+                                           "InverseDisplacementFieldTransform",
+                                           "GaussianSmoothingOnUpdateDisplacementFieldTransform",
+                                           "BSplineSmoothingOnUpdateDisplacementFieldTransform"};
+  return names.contains(itk_class(type));
 }
 
 TransformParts transform_of(const std::string& path,
@@ -329,13 +346,16 @@ TransformParts transform_of(const std::string& path,
   }
   std::vector<SingleLink> links;
   for (std::size_t t = transforms.size(); t > (is_composite ? 1U : 0U); --t) {
-    append(links, single_of(path, transforms[t - 1], ratio({-1, -1, 1}, world)));
+    const ItkTransform& next = transforms[t - 1];
+    append(links,
+           single_of(path, is_flat(next) ? lifted(path, next) : next, ratio({-1, -1, 1}, world)));
   }
   if (links.empty()) links.push_back({AffineTransform{}, {}});
   TransformParts parts;
   TransformChain chain;
   for (SingleLink& link : links) {
     parts.fields.push_back(std::move(link.field));
+    parts.file.is_inverted.push_back(link.is_inverted);
     chain.links.push_back(std::move(link.transform));
   }
   if (chain.links.size() > 1) {

@@ -26,6 +26,11 @@ bool has_transform_name(const std::string& path) {
   return has_extension(path, ".tfm") || has_extension(path, ".txt") || has_extension(path, ".mat");
 }
 
+/// Whether an image of so many components may be a displacement field.
+bool may_be_field(int components, const Grid& grid) {
+  return components == 3 || (components == 2 && grid.dims[2] == 1);
+}
+
 const char* what_of(const Transform& transform) {
   if (std::holds_alternative<AffineTransform>(transform)) return "affine transform";
   if (std::holds_alternative<DisplacementField>(transform)) return "displacement field";
@@ -91,10 +96,12 @@ bool is_transform_file(const std::string& path, const TransformReadOptions& opti
   switch (kind_of(path)) {
     case FileKind::nifti: {
       const NiftiHeader header = read_nifti_header(path);
-      return header.components == 3 || is_fsl_field(header, options);
+      return may_be_field(header.components, header.grid) || is_fsl_field(header, options);
     }
-    case FileKind::image:
-      return read_volume_header(path).arrays.front().components == 3;
+    case FileKind::image: {
+      const VolumeHeader header = read_volume_header(path);
+      return may_be_field(header.arrays.front().components, header.grid);
+    }
     case FileKind::volume: {
       const std::vector<ArrayHeader> arrays = read_volume_header(path).arrays;
       return std::any_of(arrays.begin(), arrays.end(), [](const ArrayHeader& array) {
@@ -143,6 +150,12 @@ TransformParts open_transform(const std::string& path, const TransformReadOption
     throw IoError(path, "", "has no step " + std::to_string(*options.step));
   }
   TransformParts parts = opened(path, options);
+  if (!options.takes_inverted && std::ranges::count(parts.file.is_inverted, true) > 0) {
+    throw IoError(path, "",
+                  "leads from the source to the output, a warp needs the inverse; write it by "
+                  "tetwarp compose " +
+                      path + " -o FIELD --like IMAGE, and warp by FIELD");
+  }
   for (FieldReader& field : parts.fields) {
     if (!field.read) continue;  // of a transform that is no field
     field.read = [path, read = std::move(field.read)](const Region& region, float* displacement) {

@@ -5,7 +5,7 @@ Usage: check_images.py COMMAND [EVERY]
 Images of all 48 orientations (of every EVERYth of them) are written here byte by byte in each
 format, exported to NIfTI by the command and compared; the command writes each format from NIfTI,
 which is parsed here. Where SimpleITK is installed, it reads what the command writes and the command
-what it writes; so does nibabel with .mgh and .mgz. Series are compared step by step. Damaged files
+what it writes; so does nibabel with .mgh and .mgz. So are images of two axes. Series are compared step by step. Damaged files
 must be refused in one line. Exits 77 when NumPy is missing, 1 when something differs.
 """
 import gzip
@@ -274,6 +274,46 @@ def check_orientations(run, random, every):
                 expect(f"{name} of SimpleITK", read_nifti(run.path("out.nii")), (samples, affine))
 
 
+def check_flat(run, random):
+    """Images of two axes are a slice at 0, along ITK's first two axes."""
+    spacing, origin = np.array([1.3, 0.8]), np.array([-5.0, 7.0])
+    for n, (angle, flip) in enumerate(((0.0, 1), (0.4, 1), (-0.7, -1))):
+        c, s = np.cos(angle), np.sin(angle)
+        axes = np.array([[c, -s * flip], [s, c * flip]])  # columns, along LPS
+        affine = np.eye(4)
+        affine[:2, :2], affine[:2, 3] = -axes * spacing, -origin
+        samples = random.integers(0, 100, DIMS[:2] + (1,) + ((3,) if n == 1 else ())).astype("u1")
+        data = bytes_of(samples, False)
+        numbers = lambda values: " ".join(repr(float(x)) for x in np.ravel(values))
+        steps = ["(" + numbers(step).replace(" ", ",") + ")" for step in (axes * spacing).T]
+        first = ("3 ", "none ", "vector ") if n == 1 else ("", "", "")
+        with open(run.path("flat.nrrd"), "wb") as file:
+            file.write((f"NRRD0004\ntype: uchar\ndimension: {3 if n == 1 else 2}\nspace dimension: 2\n"
+                        f"sizes: {first[0]}{DIMS[0]} {DIMS[1]}\nspace directions: {first[1]}{' '.join(steps)}\n"
+                        f"kinds: {first[2]}domain domain\nencoding: raw\n"
+                        f"space origin: ({numbers(origin).replace(' ', ',')})\n\n").encode() + data)
+        with open(run.path("flat.mha"), "wb") as file:
+            file.write(("ObjectType = Image\nNDims = 2\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+                        f"TransformMatrix = {numbers(axes.T)}\nOffset = {numbers(origin)}\n"
+                        f"ElementSpacing = {numbers(spacing)}\nDimSize = {DIMS[0]} {DIMS[1]}\n"
+                        f"ElementNumberOfChannels = {samples.size // (DIMS[0] * DIMS[1])}\n"
+                        "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n").encode() + data)
+        for name in ("flat.nrrd", "flat.mha"):
+            names = [name]
+            if sitk:
+                image = sitk.ReadImage(run.path(name))
+                there = np.array(image.TransformIndexToPhysicalPoint((2, 3)))
+                expect(f"{name} by SimpleITK", (sitk.GetArrayFromImage(image).ravel(), -there),
+                       (samples.reshape(DIMS[:2] + samples.shape[3:]).swapaxes(0, 1).ravel(),
+                        (affine @ (2, 3, 0, 1))[:2]))
+                sitk.WriteImage(image, run.path("itk_" + name))
+                names.append("itk_" + name)
+            for written in names:
+                run("export", written, "-o", "out.nii")
+                found, matrix = read_nifti(run.path("out.nii"))
+                expect(written, (found.reshape(samples.shape), matrix), (samples, affine))
+
+
 def check_warps(run, random):
     """Blocks of packed files, packed outputs, fields."""
     affine = next(itertools.islice(orientations(), 11, None))
@@ -330,6 +370,7 @@ def main():
         check_orientations(run, random, every)
         check_mgh(run, random, every)
         check_series(run, random)
+        check_flat(run, random)
         check_warps(run, random)
         check_refusals(run, random)
     print("orientations of NRRD, MetaImage and FreeSurfer, warps and refusals")

@@ -1,4 +1,4 @@
-"""Compares warps by displacement fields and transforms with NumPy, SimpleITK and fslpy.
+"""Compares warps by displacement fields and transforms with NumPy, SimpleITK, fslpy and nitransforms.
 
 Usage: check_transforms.py COMMAND [EVERY]
 
@@ -6,8 +6,8 @@ Images and fields of all 48 orientations (of every EVERYth of them) are written 
 one physical displacement in each convention that fields have, and the warped image is computed from
 the definition. Affine transforms are written as ITK's text and MATLAB files; their matrices are
 computed here. B-splines, fields and composites are written as text, and as HDF5 where SimpleITK is
-installed, warp fields of FSL as NIfTI. Where SimpleITK and fslpy are installed, their results are
-compared, too. Exits 77 when NumPy is missing, 1 when a value differs.
+installed, warp fields of FSL as NIfTI. Where SimpleITK, fslpy and nitransforms are installed, their
+results are compared, too. Exits 77 when NumPy is missing, 1 when a value differs.
 """
 import itertools
 import os
@@ -33,6 +33,12 @@ try:
 except ImportError:
     fsl_fnirt = None
     print("fslpy is not installed: its results are not compared")
+
+try:
+    import nitransforms
+except ImportError:
+    nitransforms = None
+    print("nitransforms is not installed: its results are not compared")
 
 LPS = np.diag([-1.0, -1.0, 1.0])  # from RAS to LPS and back
 DIMS = (9, 8, 7)
@@ -244,10 +250,10 @@ def transforms():
     yield "ScaleTransform", [1.1, 0.9, 1.2], CENTER, np.diag([1.1, 0.9, 1.2]), np.zeros(3)
 
 
-def text_of(kinds):
+def text_of(kinds, axes=3):
     lines = ["#Insight Transform File V1.0"]
     for n, (kind, parameters, fixed) in enumerate(kinds):
-        lines += [f"#Transform {n}", f"Transform: {kind}_double_3_3"]
+        lines += [f"#Transform {n}", f"Transform: {kind}_double_{axes}_{axes}"]
         if not kind.startswith("Composite"):
             lines += ["Parameters: " + " ".join(repr(float(p)) for p in parameters),
                       "FixedParameters: " + " ".join(repr(float(f)) for f in fixed)]
@@ -474,6 +480,33 @@ def check_compose(run, image, affine):
     expect("inverse of a field", field[near], np.zeros_like(field[near]), 1e-4)
 
 
+def check_nitransforms(run, image, affine):
+    """Where nitransforms takes voxels by a field of ITK, an affine map, and both from HDF5."""
+    write_nifti(run.path("image.nii"), image, affine)
+    x = points_of(DIMS, affine)
+    flat = x.reshape(-1, 3)
+    vectors = displacement(x).astype(np.float32) @ LPS
+    write_nifti(run.path("field.nii"), vectors, affine, intent=VECTOR)
+    kind, parameters, fixed, _, _ = next(transforms())
+    interleaved = np.transpose(vectors, (2, 1, 0, 3)).ravel()
+    field = ("DisplacementFieldTransform", interleaved, grid_in_lps(affine, DIMS))
+    for name, kinds in (("a.tfm", [(kind, parameters, fixed)]),
+                        ("b.tfm", [("CompositeTransform", [], []), (kind, parameters, fixed), field])):
+        with open(run.path(name), "w", encoding="ascii") as file:
+            file.write(text_of(kinds))
+    linear = nitransforms.io.itk.ITKLinearTransform.from_filename(run.path("a.tfm"))
+    wanted = {"field.nii": nitransforms.nonlinear.DenseFieldTransform.from_filename(
+                  run.path("field.nii"), fmt="itk"),
+              "a.tfm": nitransforms.linear.Affine(linear.to_ras())}
+    if sitk:
+        sitk.WriteTransform(sitk.ReadTransform(run.path("b.tfm")), run.path("b.h5"))
+        wanted["b.h5"] = nitransforms.manip.TransformChain.from_filename(run.path("b.h5"), fmt="itk")
+    for name, transform in wanted.items():
+        run("compose", name, "-o", "joined.nii", "--like", "image.nii")
+        moved = x + read_nifti(run.path("joined.nii"))[:, :, :, 0] @ LPS
+        expect(f"{name} by nitransforms", moved, transform.map(flat).reshape(x.shape), 1e-4)
+
+
 def check_refusals(run, image, affine):
     write_nifti(run.path("image.nii"), image, affine)
     vectors = displacement(points_of(DIMS, affine))
@@ -489,7 +522,7 @@ def check_refusals(run, image, affine):
         text_of([("BSplineTransform", [0], grid_in_lps(affine, (4, 4, 4)))]): "expected 192 parameters",
         text_of([("BSplineTransform", [0] * 24, grid_in_lps(affine, (2, 2, 2)))]): "fewer than 4",
         text_of([("DisplacementFieldTransform", [0], grid_in_lps(affine, (1e9, 2, 2.5)))]): "a size of",
-        text_of([("ThinPlateSplineKernelTransform", [0], [0])]): "is no transform of three dimensions",
+        text_of([("ThinPlateSplineKernelTransform", [0], [0])]): "is no transform that is read",
         text_of([("AffineTransform", [1, 2], [])]): "expected 12 parameters",
         text_of([("ScaleTransform", [1, 1, 1], [])] * 2): "write a composite",
         "#Insight Transform File V1.0\nTransform: AffineTransform_double_3_3\nParameters: 1 x\n":
@@ -532,7 +565,9 @@ def main():
             check_orientation(run, image, affine, coarse)
             check_splines(run, image, affine, random, n % 3 > 0)
             check_fsl(run, image, affine, random, n % 3 > 0)
-        for affine in itertools.islice(orientations(), 0, None, 7):
+            if nitransforms:
+                check_nitransforms(run, image, affine)
+        for affine in itertools.islice(orientations(), 0, None, 7 if every > 1 else 1):
             check_affine(run, image, affine)
             check_compose(run, image, affine)
         check_fsl_refusals(run, next(orientations()), random)

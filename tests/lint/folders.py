@@ -102,7 +102,7 @@ ALLOWED = {
     "io/points": ["io/import", "io/vtkhdf", "io/h5", "io/files", *IO],
     "io/reader": ["io/child", "io/import", "io/image", "io/volume", "io/files", *IO],
     "io/scene": ["io/import", "io/files", *IO],
-    "io/transforms": ["io/nifti", "io/h5", "io/files", *IO],
+    "io/transforms": ["io/image", "io/nifti", "io/h5", "io/files", *IO],
     "io/picture": ["io/files", *IO],
     "host/view": ["io/tetwarp", "io/files", "host/base", *BASE],
     "host/view/screens": ["host/view", "io/scene", "io/tetwarp", "host/base", *BASE],

@@ -9,6 +9,7 @@
 
 #include "host/cli/common/declare.hpp"
 #include "host/warp/transform_checks.hpp"
+#include "io/files/component_facts.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -21,6 +22,23 @@ void check_named(const std::string& path,
   throw IoError(path, name,
                 fmt::format("{}: no such array among those to warp; tetwarp info lists all arrays",
                             quantity < Quantity::tensor ? "--vectors" : "--tensors"));
+}
+
+/// Only files of a single array have such facts.
+void check_facts(const std::string& path, const VolumeHeader& header, Quantity quantity) {
+  const auto is_left_out = [&](const char* fact) {
+    return std::ranges::count(header.left_out, fact) > 0;
+  };
+  if (is_left_out(frame_fact)) {
+    throw IoError(
+        path, frame_fact,
+        "turns the components, which is not read; write them along the axes of the space");
+  }
+  if (quantity >= Quantity::tensor && is_left_out(order_fact)) {
+    throw IoError(path, "kinds",
+                  "tells another order of the six components than xx yy zz xy yz xz, which is not "
+                  "read; write NIfTI of intent code 1005");
+  }
 }
 }  // namespace
 
@@ -48,15 +66,16 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
 }
 
 void check_arrays(const std::string& path,
-                  const Grid& grid,
+                  const VolumeHeader& header,
                   const std::vector<ArrayHeader>& arrays,
                   const WarpArguments& arguments) {
   for (const auto& [name, quantity] : arguments.quantities) {
     check_named(path, arrays, name, quantity);
+    check_facts(path, header, quantity);
   }
   for (const ArrayHeader& array : arrays) {
     try {
-      check_source_transform({grid, array.type, array.components, nullptr, Memory::host},
+      check_source_transform({header.grid, array.type, array.components, nullptr, Memory::host},
                              arguments.quantity_of(array.name), arguments.warp);
     } catch (const std::invalid_argument& error) {
       throw IoError(path, array.name,

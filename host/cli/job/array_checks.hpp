@@ -17,9 +17,10 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
                                        const std::string& path);
 
 /// Checks the arrays of a volume file: --vectors and --tensors name some of them, their types fit
-/// the options, and their names are not those of extra outputs. Throws IoError.
+/// the options, their names are not those of extra outputs, and no fact is left out without which
+/// vectors and tensors are something else. Throws IoError.
 void check_arrays(const std::string& path,
-                  const Grid& grid,
+                  const VolumeHeader& header,
                   const std::vector<ArrayHeader>& arrays,
                   const WarpArguments& arguments);
 

@@ -172,7 +172,7 @@ VolumePlan plan_volume(const std::string& path,
   plan.notes = volume_notes(path, header, arguments);
   append(plan.notes, label_notes(path, stored, plan.arrays));
   plan.source_grid = header.grid;
-  check_arrays(path, plan.source_grid, plan.arrays, arguments);
+  check_arrays(path, header, plan.arrays, arguments);
   plan.warnings = volume_warnings(path, header, mesh.header(), arguments);
   append(plan.warnings, array_warnings(path, plan.arrays, arguments));
   const std::optional<Point3> world = itk_factor(path, header);

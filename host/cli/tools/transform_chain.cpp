@@ -61,7 +61,7 @@ ChainLink::ChainLink(const std::string& word,
                      const std::optional<Point3>& world)
     : path_(word),
       is_inverse_(word.ends_with(inverse_mark)),
-      options_{.axes = axes, .world = world, .step = 0} {
+      options_{.axes = axes, .world = world, .step = 0, .takes_inverted = true} {
   if (is_inverse_) path_.resize(path_.size() - inverse_mark.size());
   if (kind_of(path_) != FileKind::mesh && is_transform_file(path_, options_)) {
     field_steps_ = transform_step_count(path_, options_);
@@ -76,14 +76,20 @@ ChainLink::ChainLink(const std::string& word,
 
 /// Those of the chosen step.
 void ChainLink::read_transforms() {
-  transforms_ = links_of_file(read_transform(path_, options_).transform);
-  if (!is_inverse_) return;
-  std::reverse(transforms_.begin(), transforms_.end());
-  for (Transform& single : transforms_) {
-    auto* const affine = std::get_if<AffineTransform>(&single);
-    if (affine == nullptr) continue;
+  TransformFile file = read_transform(path_, options_);
+  parts_.clear();
+  for (Transform& single : links_of_file(std::move(file.transform))) {
+    const std::size_t n = parts_.size();
+    const bool is_inverted = n < file.is_inverted.size() && file.is_inverted[n];
+    parts_.push_back({std::move(single), is_inverse_ != is_inverted});
+  }
+  if (is_inverse_) std::ranges::reverse(parts_);
+  for (Part& part : parts_) {
+    auto* const affine = std::get_if<AffineTransform>(&part.transform);
+    if (affine == nullptr || !part.is_inverse) continue;
     try {
       *affine = inverse_of(*affine);
+      part.is_inverse = false;
     } catch (const std::invalid_argument& error) {
       throw IoError(path_, "", error.what());
     }
@@ -101,9 +107,7 @@ void ChainLink::choose(std::int64_t step) {
 }
 
 bool ChainLink::iterates() const {
-  return is_inverse_ && std::ranges::any_of(transforms_, [](const Transform& single) {
-           return !std::holds_alternative<AffineTransform>(single);
-         });
+  return std::ranges::any_of(parts_, &Part::is_inverse);
 }
 
 void ChainLink::apply(int threads, std::vector<Point3>& points, ChainNotes& notes) const {
@@ -116,13 +120,13 @@ void ChainLink::apply(int threads, std::vector<Point3>& points, ChainNotes& note
     points = std::move(mapped.points);
     return;
   }
-  for (const Transform& single : transforms_) {
-    if (is_inverse_ && !std::holds_alternative<AffineTransform>(single)) {
-      const InverseCounts counts = invert_field(single, points, stop_if_interrupted);
+  for (const Part& part : parts_) {
+    if (part.is_inverse) {
+      const InverseCounts counts = invert_field(part.transform, points, stop_if_interrupted);
       notes.not_inverted += counts.not_found;
       notes.largest_residual = std::max(notes.largest_residual, counts.largest_residual);
     } else {
-      points = transformed(single, std::move(points));
+      points = transformed(part.transform, std::move(points));
     }
   }
 }

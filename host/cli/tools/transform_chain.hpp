@@ -39,13 +39,19 @@ class ChainLink {
   const std::string& path() const { return path_; }
   const std::optional<MeshReader>& mesh() const { return mesh_; }  ///< of other links none
   std::int64_t step_count() const;                                 ///< 1 but for meshes and fields
-  bool iterates() const;  ///< it is the inverse of a field or a spline, see invert_field()
+  bool iterates() const;  ///< it has the inverse of a field or a spline, see invert_field()
 
   /// Chooses the step that is applied; a file with a single step keeps that.
   void choose(std::int64_t step);
   void apply(int threads, std::vector<Point3>& points, ChainNotes& notes) const;
 
  private:
+  /// One transform, no chain.
+  struct Part {
+    Transform transform;
+    bool is_inverse = false;  ///< to be applied; never of affine transforms
+  };
+
   void read_transforms();
 
   std::string path_;
@@ -53,8 +59,7 @@ class ChainLink {
   TransformReadOptions options_;  ///< with the chosen step, also of a mesh
   std::int64_t field_steps_ = 1;
   std::optional<MeshReader> mesh_;
-  std::vector<Transform> transforms_;  ///< in the order of application, no chains; of an inverse
-                                       ///< affine ones are inverted
+  std::vector<Part> parts_;  ///< in the order of application
 };
 
 /// The inverse. Throws std::invalid_argument when the matrix is singular.

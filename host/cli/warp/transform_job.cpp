@@ -74,7 +74,7 @@ TransformSource open_source(const WarpArguments& arguments) {
   source.read.series = arguments.series;
   source.header = read_volume_header(path, source.read);
   source.arrays = choose_arrays(source.header, arguments, path);
-  check_arrays(path, source.header.grid, source.arrays, arguments);
+  check_arrays(path, source.header, source.arrays, arguments);
   source.world = itk_factor(path, source.header);
   if (!source.world) take_base_facts(arguments.grid, source.arrays);
   const auto count = std::max<std::int64_t>(1, std::ssize(source.header.times));
