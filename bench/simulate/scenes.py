@@ -9,6 +9,7 @@ of the whole command, so that other work on the machine changes them little. --s
 """
 import argparse
 import datetime
+import glob
 import json
 import math
 import os
@@ -102,6 +103,25 @@ def pushing_counts(path):
     return np.array([part.sum() for part in np.split(carries, starts[1:])])
 
 
+def sum_of_density(path):
+    """Of the voxels that the mesh covers, over the volume of a voxel's grid."""
+    with h5py.File(path, "r") as file:
+        group = file["VTKHDF"]
+        mask = group["PointData/tetwarp_mask"][()] > 0
+        name = next(name for name in group["PointData"] if not name.startswith("tetwarp_"))
+        return float(group["PointData"][name][()][mask].sum(dtype=np.float64) * np.prod(group.attrs["Spacing"]))
+
+
+def largest_change(folder):
+    """Of the sum of density of any body from its first frame on, over this sum."""
+    change = 0
+    for first in glob.glob(os.path.join(folder, "*.warped_0000.vtkhdf")):
+        start = sum_of_density(first)
+        for path in glob.glob(first.replace("_0000.vtkhdf", "_*.vtkhdf")):
+            change = max(change, abs(sum_of_density(path) / start - 1))
+    return change
+
+
 def run(tool, scene, options, steps):
     """The columns of the series by name, the report, and the processor time [s]."""
     with tempfile.TemporaryDirectory() as folder:
@@ -121,6 +141,7 @@ def run(tool, scene, options, steps):
             file.visititems(lambda name, item: columns.update({name: item[()]}) if isinstance(item, h5py.Dataset)
                             else None)
         columns["pushing"] = pushing_counts(os.path.join(folder, "out", "contacts.vtkhdf"))
+        columns["density"] = largest_change(os.path.join(folder, "out"))
         with open(os.path.join(folder, "out", "report.json"), encoding="utf-8") as file:
             report = json.load(file)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -173,7 +194,7 @@ def warp_row(columns, report, seconds):
     parts = sum(timings[part] for part in ("read", "setup", "step", "write", "warp", "draw"))
     busy = seconds * (timings["step"] + timings["warp"]) / parts
     row.update(frames=report["frames"], warp_ms=1e3 * seconds * timings["warp"] / parts / report["frames"],
-               frames_a_second=report["frames"] / busy)
+               frames_a_second=report["frames"] / busy, density_change=columns["density"])
     return row
 
 
@@ -238,22 +259,23 @@ def cases(tool):
 
 def print_tables(rows):
     print("| scene | steps | tetrahedra | triangles | contacts, mean and most | that carry an impulse (outputs) | the paper | ms "
-          "| linear, contact, detection [%] | energy at start and end, largest gain [J] | passes, mean and most "
+          "| forces, assembly, linear, detection, contact, update [%] | energy at start and end, largest gain [J] | passes, mean and most "
           "| steps with stopped groups, above tolerance |")
     print("|---" * 12 + "|")
     for name, row in rows.items():
         if name.startswith("scene/"):
             mean, most = row["contacts"]
             pushing = "" if most == 0 or "pushing" not in row else f"{row['pushing'][0]:.0f}, {row['pushing'][1]}"
-            shares = ", ".join(f"{100 * row['shares'][stage]:.0f}" for stage in ("linear", "contact", "detection"))
+            shares = ", ".join(f"{100 * row['shares'][stage]:.0f}" for stage in STAGES)
             energy = ", ".join(f"{number:.3g}" for number in row["energy"])
             print(f"| {name[6:]} | {row['steps']} | {row['tetrahedra']} | {row['triangles']} | {mean:.0f}, {most} | {pushing} "
                   f"| {PAPER.get(name[6:], '')} | {row['ms']:.2g} | {shares} | {energy} "
                   f"| {row['passes'][0]:.1f}, {row['passes'][1]} | {row['clamped']}, {row['unconverged']} |")
-    print("\n| volumes | frames | a step [ms] | warps of a frame [ms] | frames a second |\n|---|---|---|---|---|")
+    print("\n| volumes | frames | a step [ms] | warps of a frame [ms] | frames a second | density's sum, largest change [%] |\n|---|---|---|---|---|---|")
     for name, row in rows.items():
         if name.startswith("volumes/"):
-            print(f"| {name[8:]} | {row['frames']} | {row['ms']:.2g} | {row['warp_ms']:.3g} | {row['frames_a_second']:.2g} |")
+            print(f"| {name[8:]} | {row['frames']} | {row['ms']:.2g} | {row['warp_ms']:.3g} | {row['frames_a_second']:.2g} "
+                  f"| {100 * row['density_change']:.2g} |")
     print("\n| | triangles | contacts, mean and most | first contact [s] | last bond [s] | bonded at most [cm^2] | work [mJ] | ms |")
     print("|---" * 8 + "|")
     for name, row in rows.items():
