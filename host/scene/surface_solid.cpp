@@ -18,7 +18,7 @@ namespace tetwarp {
 namespace {
 constexpr double least_part = 0.01;  // of the mean fraction
 
-using Corners = std::array<Point3, 3>;  // of a triangle
+using TriangleCorners = std::array<Point3, 3>;  // of a triangle
 
 /// A tetrahedron of positive volume as a convex part.
 ConvexPart part_of(const std::array<Point3, 4>& tet) {
@@ -33,7 +33,7 @@ ConvexPart part_of(const std::array<Point3, 4>& tet) {
 
 /// Volume of a part in the column below a triangle, negative where the triangle faces down.
 /// @param twice_area  of the triangle seen from above, signed
-double volume_below(const ConvexPart& part, const Corners& triangle, double twice_area) {
+double volume_below(const ConvexPart& part, const TriangleCorners& triangle, double twice_area) {
   const double sign = twice_area > 0 ? 1 : -1;
   ConvexPart parts[2];
   const ConvexPart* now = &part;
@@ -71,9 +71,9 @@ double volume_within(const Surface& surface,
   double sum = 0;
   tree.visit(column, [&](std::int32_t t) {
     const auto& [p, q, r] = at(surface.triangles, t);
-    const Corners triangle{minus(at(surface.points, p), tet[0]),
-                           minus(at(surface.points, q), tet[0]),
-                           minus(at(surface.points, r), tet[0])};
+    const TriangleCorners triangle{minus(at(surface.points, p), tet[0]),
+                                   minus(at(surface.points, q), tet[0]),
+                                   minus(at(surface.points, r), tet[0])};
     const Point3 a = minus(triangle[1], triangle[0]), b = minus(triangle[2], triangle[0]);
     const double twice_area = a[0] * b[1] - a[1] * b[0];
     if (twice_area != 0) sum += volume_below(part, triangle, twice_area);
