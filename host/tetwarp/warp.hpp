@@ -284,7 +284,8 @@ class TETWARP_EXPORT Warper {
   /// @throws as the other step(); std::invalid_argument when there are several sources
   Volume step(const PositionsView& deformed);
 
-  /// Sums over the finished steps, and the records of the last ones: of 500 at least, 1000 at most.
+  /// Sums over all finished steps, and their records: all, or of more than 1000 steps those of the
+  /// last 500 to 1000, numbered by StepReport::step.
   const Report& report() const;
 
  private:

@@ -83,7 +83,7 @@ class LiveSimulation {
   /// Ends the thread after the running step and the single steps that were ordered.
   void end();
 
-  /// After end(): the steps made, and what the user did before them. Of the start at any time.
+  /// The steps made, and what the user did before them: after end(); scene and start at any time.
   const InputLog& log() const { return log_; }
   const LiveSeconds& seconds() const { return seconds_; }
   /// Steps that max_step_seconds ended.

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include <tetwarp/volume.hpp>
@@ -25,7 +26,7 @@ std::int64_t slice_number(const Grid& grid, std::size_t axis, double place);
 /// All, then each alone, then all again.
 void choose_next(SliceLook& slices);
 
-/// The shown slice that a ray meets first, and where.
+/// The shown slice that a ray meets first, and where; grids without a direction.
 struct MetSlice {
   std::size_t axis = 0;
   double distance = 0;  ///< in lengths of the direction

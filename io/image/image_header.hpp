@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,8 @@ struct ImageHeader {
   std::int64_t skipped = 0;        ///< bytes before the samples in what is packed
   bool is_big_endian = false;
   /// Of NRRD, in lower case: "resampling" or "modeling", the direction of displacements, or another
-  /// word of the file; empty where it does not tell.
-  std::string field_type = {};
+  /// word of the file; none: it does not tell.
+  std::optional<std::string> field_type = {};
   std::string component_kind = {};         ///< of NRRD's axis of components, in lower case
   std::vector<std::string> left_out = {};  ///< other fields of the header
 

@@ -83,9 +83,10 @@ class NrrdReader {
   /// A key of 3D Slicer; others are left out.
   void read_pair(const std::string& key, const std::string& value) {
     if (lower_case(key) != nrrd_field_type) return header_.left_out.push_back(key);
-    if (!header_.field_type.empty()) fail(key, "is there twice in its header");
-    header_.field_type = value.empty() ? "empty" : lower_case(value);
-    if (header_.field_type != "resampling") header_.left_out.push_back(key);  // which is usual
+    if (header_.field_type) fail(key, "is there twice in its header");
+    header_.field_type = lower_case(value);
+    // Resampling is what is taken without the key.
+    if (header_.field_type != "resampling") header_.left_out.push_back(key);
   }
 
   std::optional<std::string> take(const std::string& name) {
@@ -268,7 +269,9 @@ class NrrdReader {
     if (of_space_ == 2 && !is_flat) steps[2] = unit(cross(steps[0], steps[1]));
     if (const auto given = take("space origin")) origin = vector(*given, "space origin");
     const std::string frame = fields_.contains(frame_fact) ? fields_[frame_fact] : "";
-    if (is_unit_frame(frame)) take(frame_fact);  // as without it
+    // Those of LPS are the axes that components have without a frame.
+    const bool is_lps = is_negated == std::array<bool, 3>{true, true, false};
+    if (is_lps && is_unit_frame(frame)) take(frame_fact);
     try {
       set_image_axes(steps, origin, is_negated, header_.grid);
     } catch (const std::invalid_argument& error) {
@@ -356,9 +359,8 @@ std::string nrrd_header_text(const ImageHeader& header) {
          "\nendian: little\nencoding: " + (header.is_packed ? "gzip" : "raw") +
          "\nspace origin: (" + lps(0, grid.origin[0]) + "," + lps(1, grid.origin[1]) + "," +
          lps(2, grid.origin[2]) + ")\n" +
-         (header.field_type.empty()
-              ? ""
-              : std::string(nrrd_field_type) + ":=" + header.field_type + "\n") +
+         (header.field_type ? std::string(nrrd_field_type) + ":=" + *header.field_type + "\n"
+                            : "") +
          "\n";
 }
 

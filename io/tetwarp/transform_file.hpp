@@ -22,8 +22,8 @@ struct TransformFile {
   std::string
       convention;  ///< for a line to print: "displacements along LPS axes in mm (intent ...)"
   bool ends_with_field = false;  ///< what is beyond the field's grid has no place in the source
-  /// By link of a chain, of another transform one: whether its inverse is meant, because the file
-  /// says that it leads from the source to the output. Empty: of none.
+  /// One for each link of a chain, a single one for any other transform: true if the file says that
+  /// the link leads from the source to the output, so that its inverse is meant. Empty: none does.
   std::vector<bool> is_inverted = {};
 };
 

@@ -188,10 +188,10 @@ bool leads_to_output(const std::string& path, const ImageHeader& header) {
   }
   if (std::ranges::count(header.left_out, frame_fact) > 0) {
     throw IoError(path, frame_fact,
-                  "turns the components, which is not read; write them along LPS axes");
+                  "turns the components from LPS axes, which is not read; write them along these");
   }
-  const std::string& type = header.field_type;
-  if (type.empty() || type == "resampling") return false;
+  const std::string type = header.field_type.value_or("resampling");
+  if (type == "resampling") return false;
   if (type == "modeling") return true;
   throw IoError(path, nrrd_field_type, "is '" + type + "', expected resampling or modeling");
 }

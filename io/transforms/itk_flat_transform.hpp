@@ -11,11 +11,12 @@ namespace tetwarp {
 /// planes across it that an image may have [mm].
 inline constexpr double flat_thickness = 0x1p20;
 
-/// Whether a transform takes points of two dimensions to such points; of composites it is false.
+/// Whether a transform takes points of two dimensions to such points.
 bool is_flat(const ItkTransform& transform);
 
-/// The transform of three dimensions that is this one in all planes across the third axis.
-/// @throws IoError  on types that are not read, and other numbers of parameters
+/// The transform of three dimensions that is this one in all planes across the third axis; one of a
+/// type that is not read as it is.
+/// @throws IoError  on other numbers of parameters
 ItkTransform lifted(const std::string& path, const ItkTransform& transform);
 
 }  // namespace tetwarp

@@ -347,6 +347,9 @@ TransformParts transform_of(const std::string& path,
   std::vector<SingleLink> links;
   for (std::size_t t = transforms.size(); t > (is_composite ? 1U : 0U); --t) {
     const ItkTransform& next = transforms[t - 1];
+    if (is_flat(next) != is_flat(transforms.back())) {
+      throw IoError(path, "", "holds transforms of two and of three dimensions");
+    }
     append(links,
            single_of(path, is_flat(next) ? lifted(path, next) : next, ratio({-1, -1, 1}, world)));
   }

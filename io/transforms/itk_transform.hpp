@@ -39,8 +39,7 @@ void check_itk_count(const std::string& path,
 bool is_itk_field(const std::string& type);
 
 /// The transform of a file, turned from LPS and millimeters to a world, without a convention. A
-/// composite applies its last transform first.
-/// Transforms of two dimensions are lifted() to three.
+/// composite applies its last transform first. Transforms of two dimensions are lifted() to three.
 /// @param world     itk_factor() of the world
 /// @throws IoError  when the file holds several without a composite, or one that is not read
 TransformParts transform_of(const std::string& path,

@@ -3,9 +3,10 @@
 /// output.
 #include <gtest/gtest.h>
 
-#include <array>
+#include <map>
 #include <string>
 #include <tetwarp/backend.hpp>
+#include <utility>
 #include <vector>
 
 #include "tests/support/cli_scene.hpp"
@@ -128,23 +129,24 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
   }
 }
 
-/// Whatever the end of its name says.
+/// By all commands that read files of its name.
 TEST(BadInput, RefusesAFolderAsAnyInput) {
   const Scene scene;
-  std::size_t number = 0;
-  for (const std::string end :
-       {"csv", "fcsv", "h5",  "mat", "mha", "mrk.json", "msh", "nii",    "nii.gz", "nrrd",
-        "obj", "ply",  "stl", "tfm", "tsv", "txt",      "vtk", "vtkhdf", "vtp",    "vtu"}) {
-    const std::string folder = "folder." + end;
+  // v, m: volume and mesh or transform of warp; p: points; i: import; c: contact.
+  for (const auto& [end, readers] :
+       {std::pair{"csv", "p"}, {"fcsv", "p"}, {"h5", "mc"},       {"mat", "m"},    {"mha", "vi"},
+        {"mrk.json", "p"},     {"msh", "mi"}, {"nii", "vmi"},     {"nii.gz", "v"}, {"nrrd", "vm"},
+        {"obj", "p"},          {"ply", "p"},  {"stl", "p"},       {"tfm", "m"},    {"tsv", "pc"},
+        {"txt", "m"},          {"vtk", "mp"}, {"vtkhdf", "vmpi"}, {"vtp", "p"},    {"vtu", "mi"}}) {
+    const std::string folder = std::string("folder.") + end;
     fs::create_directory(scene / folder);
-    const std::array<Names, 5> commands{{{"warp", folder, "mesh.vtkhdf", "-o", "a.vtkhdf"},
-                                         {"warp", "volume.vtkhdf", folder, "-o", "a.vtkhdf"},
-                                         {"points", folder, "mesh.vtkhdf", "-o", "a.csv"},
-                                         {"import", folder, "-o", "a.vtkhdf"},
-                                         {"contact", folder, "-o", "a.h5"}}};
-    // Two of them, others for the next ending.
-    for (int n = 0; n < 2; ++n) {
-      expect_refused(scene, {commands[number++ % commands.size()], folder + ": "}, 1);
+    const std::map<char, Names> commands{{'v', {"warp", folder, "mesh.vtkhdf", "-o", "a.vtkhdf"}},
+                                         {'m', {"warp", "volume.vtkhdf", folder, "-o", "a.vtkhdf"}},
+                                         {'p', {"points", folder, "mesh.vtkhdf", "-o", "a.csv"}},
+                                         {'i', {"import", folder, "-o", "a.vtkhdf"}},
+                                         {'c', {"contact", folder, "-o", "a.h5"}}};
+    for (const char reader : std::string(readers)) {
+      expect_refused(scene, {commands.at(reader), folder + ": "}, 1);
     }
   }
   fs::create_directory(scene / "folder.json");

@@ -17,18 +17,20 @@ namespace tetwarp::test {
 namespace {
 using Names = std::vector<std::string>;
 
-/// Until a run has written to `file` four times, which it does at most twice a second, or a minute
-/// has passed.
-void wait_for_writes(const fs::path& file) {
-  fs::file_time_type last;
-  for (int tries = 0, writes = 0; tries < 1200 && writes < 4; ++tries) {
+/// Waits for four writes to a file, which takes some seconds, at most for a minute.
+/// @returns whether they came
+bool is_written(const fs::path& file) {
+  std::error_code missing;
+  fs::file_time_type last = fs::last_write_time(file, missing);
+  int writes = 0;
+  for (int tries = 0; tries < 1200 && writes < 4; ++tries) {
     usleep(50'000);
-    std::error_code missing;
     const fs::file_time_type time = fs::last_write_time(file, missing);
     if (missing || time == last) continue;
     last = time;
     ++writes;
   }
+  return writes == 4;
 }
 
 TEST(Simulate, LeavesReadableFilesWhenInterrupted) {
@@ -36,7 +38,7 @@ TEST(Simulate, LeavesReadableFilesWhenInterrupted) {
   RunningCommand command(scene, {"simulate", "scene.json", "-o", "out", "--steps", "100000000",
                                  "--checkpoint", "state"});
   const std::string series = scene.in("out", "series.h5");
-  wait_for_writes(scene.in("out", "beam.vtkhdf"));
+  ASSERT_TRUE(is_written(scene.in("out", "beam.vtkhdf")));
   const auto start = std::chrono::steady_clock::now();
 
   kill(command.process(), SIGINT);
@@ -88,7 +90,7 @@ TEST(Simulate, LeavesAllStepsBeforeOneThatFails) {
 TEST(Simulate, LeavesReadableFilesWhenKilled) {
   const SimulateScene scene;
   RunningCommand command(scene, {"simulate", "scene.json", "-o", "out", "--steps", "100000000"});
-  wait_for_writes(scene.in("out", "beam.vtkhdf"));
+  ASSERT_TRUE(is_written(scene.in("out", "beam.vtkhdf")));
 
   kill(command.process(), SIGKILL);
   EXPECT_EQ(command.wait().exit_code, 137);
@@ -105,14 +107,14 @@ TEST(Simulate, GoesOnInItsFilesAfterItWasKilled) {
       "state",    "--checkpoint-every", "7"};
   {
     RunningCommand command(scene, words);
-    wait_for_writes(scene / "state");
+    ASSERT_TRUE(is_written(scene / "state"));
     kill(command.process(), SIGKILL);
     EXPECT_EQ(command.wait().exit_code, 137);
   }
   Names again = words;
   again.insert(again.end(), {"--restart", "state"});
   RunningCommand command(scene, again);
-  wait_for_writes(scene.in("out", "beam.vtkhdf"));
+  ASSERT_TRUE(is_written(scene.in("out", "beam.vtkhdf")));
   kill(command.process(), SIGINT);
   EXPECT_EQ(command.wait().exit_code, 130);
 

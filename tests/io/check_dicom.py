@@ -2,8 +2,8 @@
 
 Usage: check_dicom.py COMMAND [EVERY]
 
-Series are written here byte by byte, in all 48 orientations (in every EVERYth of them), with slices in any order of their names, rescaled values, tilted gantries, a dose grid, enhanced images and colors; the command
-turns them into NIfTI images, which are parsed and compared. Where SimpleITK is installed, it reads the same series,
+Series are written here byte by byte, in all 48 orientations (in every EVERYth of them), with slices in any order
+of their names, rescaled values, tilted gantries, a dose grid, enhanced images and colors; the command turns them into NIfTI images, which are parsed and compared. Where SimpleITK is installed, it reads the same series,
 and the command reads series that SimpleITK packs by JPEG 2000 and lossless JPEG. Images that the command writes
 as .vti are read by VTK, and the command reads what VTK writes, packed and with arrays of bits. Series that make
 no volume must be refused in one line. Exits 77 when NumPy is missing, 1 when something differs.

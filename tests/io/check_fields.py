@@ -140,6 +140,12 @@ def check_facts(run, image, affine):
     for lines, kind in ((unit,), "vector"), ((), "list"), ((TYPE + ":= Resampling",), "3-vector"):
         write_field(run.path("good.nrrd"), vectors, affine, *lines, kind=kind)
         run("warp", "image.nii", "good.nrrd", "-o", "out.nii")
+    write_field(run.path("bad.nrrd"), vectors, affine, unit)
+    with open(run.path("bad.nrrd"), "rb") as file:
+        data = file.read().replace(b"left-posterior-superior", b"right-anterior-superior")
+    with open(run.path("bad.nrrd"), "wb") as file:
+        file.write(data)  # its unit frame is that of RAS
+    assert "turns the components" in run.refused(*next(ways))
     run("mesh", "image.nii", "-o", "mesh.vtkhdf", "--cells", "2")
     run("deform", "mesh.vtkhdf", "-o", "moving.vtkhdf", "--steps", "1", "--amount", "0.1")
     warp = lambda name, *words: ("warp", name, "moving.vtkhdf", "-o", "out.nii", *words)

@@ -41,8 +41,8 @@ struct Wait {
 };
 
 /// @returns of each job the earlier ones, ascending, that write a file which it reads or writes, or
-///          read one which it writes. Jobs that wait for these may run beside each other and leave
-///          the files that they leave one after the other.
+///          read one which it writes. Jobs that wait for these may run beside each other: the files
+///          at the end are those of one job after the other.
 std::vector<std::vector<Wait>> waits_of_jobs(const std::vector<JobFiles>& files);
 
 }  // namespace tetwarp::cli

@@ -22,8 +22,10 @@ ContactKey key_of(std::int32_t body_a,
              : ContactKey{body_b, feature_b, body_a, feature_a};
 }
 
-/// Of the normals of a touch of a vertex and of a record of the same vertex and body.
+/// Of the normals of a touch of a vertex and of a record of the same vertex and body; 1 where that
+/// of the record is not known.
 double cosine_between(const PairTouch& touch, const ContactRecord& record) {
+  if (record.normal_world == Point3{0, 0, 0}) return 1;
   const double sign = record.key.feature_a == touch.a ? 1 : -1;
   return sign * dot(record.normal_world, point_of(touch.normal));
 }
@@ -70,7 +72,6 @@ PairContacts::VertexRecord* PairContacts::nearest(const PairTouch& touch,
   for (VertexRecord& of : own) {
     if (of.is_taken) continue;
     const ContactRecord& record = records[of.record];
-    if (record.normal_world == Point3{0, 0, 0}) return &of;
     const double cosine = cosine_between(touch, record);
     if (cosine <= closest) continue;
     closest = cosine;

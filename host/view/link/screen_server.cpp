@@ -224,7 +224,7 @@ void ScreenServer::swap() {
   const std::int64_t late_before = group_.late_count();
   const std::vector<std::string> members = group_.swap();
   for (const std::string& member : members) send(member, SwapMessage{frame_});
-  if (members.empty() || group_.late_count() > late_before) return;
+  if (members.empty() || group_.late_count() > late_before || !group_.late_frames().empty()) return;
   const std::lock_guard lock(mutex_);
   ++counts_.ready_frames;
   counts_.ready_seconds += seconds;

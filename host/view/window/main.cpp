@@ -111,7 +111,7 @@ extern "C" void note_signal(int signal) {
   signal_number = signal;
 }
 
-/// A signal ends it as the key Escape does.
+/// A signal ends it as Ctrl and q do.
 void take_signals() {
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);

@@ -97,7 +97,7 @@ void SceneActors::add_arrows(ArrowActors& of, const Rgb& color, vtkRenderer* ren
   of.data->SetPoints(of.places);
   of.data->GetPointData()->AddArray(of.vectors);
   vtkNew<vtkArrowSource> arrow;
-  arrow->SetTipResolution(6);
+  arrow->SetTipResolution(6);  // few sides: a picture may have thousands
   arrow->SetShaftResolution(4);
   of.arrow_mapper->SetInputData(of.data);
   of.arrow_mapper->SetSourceConnection(arrow->GetOutputPort());

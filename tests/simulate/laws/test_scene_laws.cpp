@@ -153,9 +153,14 @@ TEST(SceneLaws, OrangesLandAndRollAboveTheFloor) {
     EXPECT_LT(record.energy.total(), energy) << n;
     energy = record.energy.total();
     near += record.smallest_distance < 0.9 * simulator.thickness();
-    for (std::size_t b = 0; b < 6 && n % 100 == 99; ++b) {
-      for (const Point3& x : simulator.surface_positions(b)) {
+    if (n % 100 != 99) continue;
+    const std::vector<Surface> surfaces = surfaces_now(simulator);
+    for (std::size_t b = 0; b < 6; ++b) {
+      for (const Point3& x : surfaces[b].points) {
         ASSERT_GE(x[2], 0.5 * simulator.thickness()) << n;
+      }
+      for (std::size_t other = 0; other < b; ++other) {
+        EXPECT_EQ(crossing_count(surfaces[other], surfaces[b]), 0) << n;
       }
     }
   }
