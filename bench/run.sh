@@ -17,12 +17,12 @@ run_bench() {
   for argument in "$@"; do
     case $argument in
       --peers) with_peers=yes ;;
-      --install) installs=yes required+=("${peer_packages[@]}") ;;
+      --install) installs=yes required+=("${peer_packages[@]}" python3-venv) ;;
       *) arguments+=("$argument") ;;
     esac
   done
   install_packages "${required[@]}"
-  [[ $installs == no ]] || install_python_peers
+  [[ $installs == no ]] || install_python_peers || echo "not all of bench/peers/python.txt is installed"
   unset OMP_WAIT_POLICY  # threads may spin: nothing else should run meanwhile
   [[ -x $python ]] || python=python3
   results=$folder/results/$(date +%F)-$(machine_name)
@@ -30,7 +30,7 @@ run_bench() {
   configure "$folder" "${cuda_options[@]}" -DTETWARP_BENCH=ON -DTETWARP_TESTS=OFF
   cmake --build "$folder" --target tetwarp_bench tetwarp_bench_contact
   mkdir -p "$folder/results"
-  rm -f "$results".json "$results"-{contact,beside}.json "$folder/results.md"
+  rm -f "$results".json "$results"-{contact,beside}.json "$folder"/{results,warp_python}.md
   "$folder/tetwarp_bench" --benchmark_out="$results.json" \
     ${arguments[@]+"${arguments[@]}"} || status=$?
   "$folder/tetwarp_bench_contact" --benchmark_out="$results-contact.json" \
@@ -64,8 +64,9 @@ bench_peers() {
 # Packages of PyPI that the warp from Python is measured beside, in an environment of their own. It is
 # of the interpreter that CMake builds the module for.
 install_python_peers() {
-  [[ -x $folder/python_peers/bin/python ]] || python3 -m venv "$folder/python_peers"
-  "$folder/python_peers/bin/python" -m pip install --quiet --no-compile \
+  # Where a module of venv is missing, it leaves a folder without pip.
+  [[ -x $folder/python_peers/bin/pip ]] || python3 -m venv "$folder/python_peers" || return
+  "$folder/python_peers/bin/pip" install --quiet --no-compile \
     -r "$root/bench/peers/python.txt"
 }
 
@@ -134,5 +135,9 @@ bench_report() {
   [[ -z ${TETWARP_GPU_PEERS:-} ]] || logs+=(--gpu-peers "$TETWARP_GPU_PEERS")
   "$python" "$root/bench/report" tables ${logs[@]+"${logs[@]}"} "${files[@]}" \
     >"$folder/results.md"
+  if [[ -s $folder/warp_python.md ]]; then
+    files+=("$results-python.json")
+    { printf '\n### The warp from Python\n\n' && cat "$folder/warp_python.md"; } >>"$folder/results.md"
+  fi
   printf '%s\n' "${files[@]}" "$folder/results.md"
 }

@@ -72,7 +72,7 @@ find_program(TETWARP_PYTHON3 python3)
 if(TETWARP_PYTHON3)
   add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON3}
     ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
-  # Of the 48 orientations of a grid every fifth or so; all as `long`.
+  # Of the 48 orientations of a grid every nth by its share; all as `long`.
   set(checks axes dicom fields images transforms)
   set(shares 5 7 24 5 5)
   foreach(check every IN ZIP_LISTS checks shares)

@@ -67,6 +67,11 @@ void ArrayWarper::check_arrays(const StepArrays& arrays) const {
         throw std::invalid_argument(out_name(volumes, n) +
                                     ": shares memory with an output of a step in flight");
       }
+      const AnyPoints& read = flight.arrays.deformed;
+      if (memory_of(read) == Memory::device && overlap(read, volumes[n])) {
+        throw std::invalid_argument(out_name(volumes, n) +
+                                    ": shares memory with deformed of a step in flight");
+      }
     }
   }
   for (const Flight& flight : flights_) {
@@ -103,7 +108,8 @@ void ArrayWarper::begin_step(StepArrays arrays, nb::object given, nb::object pro
   bool goes_on = true;
   interruption.run([&] {
     warper_.begin_step(arrays.positions(), target, [&](double fraction) {
-      return goes_on = goes_on && interruption.go_on(fraction);
+      goes_on = goes_on && interruption.go_on(fraction);
+      return goes_on;
     });
   });
   flights_.push_back({std::move(arrays), std::move(given)});

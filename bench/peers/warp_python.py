@@ -4,7 +4,8 @@
     python3 bench/peers/warp_python.py prepare FOLDER     inputs and exact results, by tetwarp
     python3 bench/peers/warp_python.py run PEER FOLDER    appends rows to FOLDER/rows.json
     python3 bench/peers/warp_python.py all FOLDER RESULTS prepares, runs every peer that is installed,
-                                                          and writes the rows of this run to RESULTS
+                                                          and writes the rows of this run to RESULTS,
+                                                          whose other keys stay
     python3 bench/peers/warp_python.py table RESULTS      the table on standard output
 
 A PEER needs its own package only: one that this interpreter lacks is looked for in that of the
@@ -348,15 +349,16 @@ def run(peer, folder, path):
 
 
 def run_peer(peer, folder):
-    """Its rows of all cases, by the first interpreter that has it."""
+    """Its rows of all cases, by the first interpreter that has its module."""
     for path in sorted(folder.glob("*.npz"), reverse=True):
         for interpreter in INTERPRETERS:
             command = [interpreter, __file__, "run", peer, str(folder), str(path)]
             done = subprocess.run(command, text=True, stderr=subprocess.PIPE, check=False)
-            if done.returncode == 0:
+            lines = done.stderr.strip().splitlines() or [f"status {done.returncode}"]
+            if done.returncode == 0 or not lines[-1].startswith("ModuleNotFoundError"):
                 break
-        else:
-            print(f"{peer}: left out: {done.stderr.strip().splitlines()[-1]}")
+        if done.returncode != 0:
+            print(f"{peer}, {path.stem}: left out: {lines[-1]}")
 
 
 def run_all(folder, results):
@@ -374,8 +376,9 @@ def run_all(folder, results):
         program="bench/peers/warp_python.py", processor=model.group(1) if model else "unknown",
         num_cpus=os.cpu_count(), busy=load > 0.3, commit=commit, python=sys.version.split()[0])
     lines = rows.read_text(encoding="utf8").splitlines()
-    results.write_text(json.dumps({"context": context, "rows": list(map(json.loads, lines))}, indent=1)
-                       + "\n", encoding="utf8")
+    kept = json.loads(results.read_text(encoding="utf8")) if results.exists() else {}
+    kept.update(context=kept.get("context", {}) | context, rows=list(map(json.loads, lines)))
+    results.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf8")
 
 
 def table(results):

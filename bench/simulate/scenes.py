@@ -5,7 +5,8 @@ how results converge with finer meshes and shorter steps.
 
 measures the rows whose names begin with a NAME, or all, puts them into RESULTS.json, whose other rows are
 kept, and prints all as tables. Runs take one thread, that of the whole candy two; times are processor times
-of the whole command, so that other work on the machine changes them little. --steps ends runs early. Needs h5py.
+of the whole command, so that other work on the machine changes them little. --steps ends runs early, but those of a number of their own.
+Needs h5py.
 """
 import argparse
 import datetime
@@ -114,11 +115,16 @@ def sum_of_density(path):
 
 def largest_change(folder):
     """Of the sum of density of any body from its first frame on, over this sum."""
+    firsts = glob.glob(os.path.join(folder, "*.warped_0000.vtkhdf"))
+    if not firsts:
+        raise SystemExit(f"{folder}: expected warped volumes of frames, *.warped_0000.vtkhdf")
     change = 0
-    for first in glob.glob(os.path.join(folder, "*.warped_0000.vtkhdf")):
+    for first in firsts:
         start = sum_of_density(first)
-        for path in glob.glob(first.replace("_0000.vtkhdf", "_*.vtkhdf")):
-            change = max(change, abs(sum_of_density(path) / start - 1))
+        later = set(glob.glob(first.replace("_0000.vtkhdf", "_*.vtkhdf"))) - {first}
+        if not later:
+            raise SystemExit(f"{first}: is the only frame of its body; nothing can change")
+        change = max(change, *(abs(sum_of_density(path) / start - 1) for path in later))
     return change
 
 
@@ -131,7 +137,7 @@ def run(tool, scene, options, steps):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         words = [tool, "simulate", path, "-o", "out", "--quiet", "--contacts", "out/contacts.vtkhdf"]
         words += options + ([] if "--threads" in options else ["--threads", "1"])
-        words += ["--steps", str(steps)] if steps else []
+        words += ["--steps", str(steps)] if steps and "--steps" not in options else []
         done = subprocess.run(words, capture_output=True, text=True, cwd=folder)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if done.returncode not in (0, 3):  # 3: a step stayed above its tolerance
@@ -141,7 +147,8 @@ def run(tool, scene, options, steps):
             file.visititems(lambda name, item: columns.update({name: item[()]}) if isinstance(item, h5py.Dataset)
                             else None)
         columns["pushing"] = pushing_counts(os.path.join(folder, "out", "contacts.vtkhdf"))
-        columns["density"] = largest_change(os.path.join(folder, "out"))
+        if "--warp" in options:
+            columns["density"] = largest_change(os.path.join(folder, "out"))
         with open(os.path.join(folder, "out", "report.json"), encoding="utf-8") as file:
             report = json.load(file)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -315,12 +322,15 @@ def main():
     if os.path.exists(arguments.results):
         with open(arguments.results, encoding="utf-8") as file:
             rows = json.load(file)["rows"]
-    for name, scene, options, row_of in cases(arguments.tool):
+    tool = os.path.abspath(arguments.tool)
+    for name, scene, options, row_of in cases(tool):
         if arguments.only and not name.startswith(tuple(arguments.only)):
             continue
-        rows[name] = row_of(*run(arguments.tool, scene, options, arguments.steps))
+        rows[name] = row_of(*run(tool, scene, options, arguments.steps))
+        if "--threads" in options:
+            rows[name]["threads"] = int(options[options.index("--threads") + 1])
         print(f"{name}: {rows[name]['ms']:.3g} ms a step", file=sys.stderr)
-        version = subprocess.run([arguments.tool, "--version"], capture_output=True, text=True).stdout.strip()
+        version = subprocess.run([tool, "--version"], capture_output=True, text=True).stdout.strip()
         with open(arguments.results, "w", encoding="utf-8") as file:
             json.dump({"context": {"date": datetime.date.today().isoformat(), "processor": processor(),
                                    "version": version, "threads": 1}, "rows": rows}, file, indent=1)

@@ -16,6 +16,7 @@ import subprocess
 import tempfile
 
 SIZE = (800, 600)
+WAIT = 60  # seconds, for what should end at once
 SCENES = {  # options, and the pixel where the mouse takes something
     "torso": ([], (400, 330)),
     "shoulder": (["--max-step-seconds", "0.02"], (400, 250)),
@@ -52,10 +53,19 @@ def measure(command, name, seconds, environment, folder):
         angle = 2 * math.pi * n / 50
         steps.append(f"mousemove {x + round(40 * math.sin(angle))} {y + round(25 * math.cos(angle)) - 25} "
                      "sleep 0.04")
-    subprocess.run(["xdotool", *" ".join(steps).split(), "mouseup", "1", "keydown", "Escape"],
-                   env=environment, check=True, stdout=subprocess.DEVNULL)
-    printed = window.communicate()[0]
-    subprocess.run(["xdotool", "keyup", "Escape"], env=environment, check=True)
+    try:
+        subprocess.run(["xdotool", *" ".join(steps).split(), "mouseup", "1", "keydown", "Escape"],
+                       env=environment, check=True, stdout=subprocess.DEVNULL,
+                       timeout=2 * seconds + WAIT)
+        printed = window.communicate(timeout=WAIT)[0]
+        subprocess.run(["xdotool", "keyup", "Escape"], env=environment, check=True, timeout=WAIT)
+    except subprocess.TimeoutExpired as error:
+        raise SystemExit(f"{name}: {error.cmd[0]} has not ended after {error.timeout:g} s") from None
+    except subprocess.CalledProcessError as error:
+        raise SystemExit(f"{name}: xdotool: status {error.returncode}") from None
+    finally:
+        window.kill()
+        window.wait()
     if window.returncode != 0:
         raise SystemExit(f"{name}: status {window.returncode}")
     with open(os.path.join(folder, "input.txt"), encoding="ascii") as record:
@@ -63,7 +73,10 @@ def measure(command, name, seconds, environment, folder):
             raise SystemExit(f"{name}: nothing is at {x}, {y}")
     count, step, warps, warp, pictures, picture = PROCESSOR.search(printed).groups()
     rate, wall, late, drawn = WALL.search(printed).groups()
-    pulls, mean, most = DELAY.search(printed).groups()
+    delay = DELAY.search(printed)
+    if delay is None:
+        raise SystemExit(f"{name}: no pull reached a picture in {seconds:g} s; give more --seconds")
+    pulls, mean, most = delay.groups()
     return {"steps": int(count), "steps_per_second": float(rate), "late_steps": int(late),
             "pictures": int(pictures), "pictures_per_second": float(drawn), "seconds": float(wall),
             "processor_ms": {"step": float(step), "warp": float(warp) if int(warps) else None,
@@ -91,7 +104,13 @@ def main():
         server.terminate()
         server.wait()
     version = subprocess.run([command, "--version"], capture_output=True, text=True).stdout.strip()
-    context = {"date": str(datetime.date.today()), "version": version, "size": SIZE,
+    folder = os.path.dirname(os.path.abspath(__file__))
+    commit = subprocess.run(["git", "-C", folder, "rev-parse", "--short", "HEAD"], capture_output=True,
+                            text=True).stdout.strip()
+    with open("/proc/cpuinfo", encoding="utf8") as cpuinfo:
+        model = re.search("model name.*: (.*)", cpuinfo.read())
+    context = {"date": str(datetime.date.today()), "version": version, "commit": commit,
+               "processor": model.group(1) if model else "unknown", "size": SIZE,
                "processors": os.cpu_count(), "threads": 1}
     with open(arguments.results, "w", encoding="ascii") as file:
         json.dump({"context": context, "rows": rows}, file, indent=1)

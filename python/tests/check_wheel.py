@@ -49,7 +49,7 @@ assert np.array_equal(tetwarp.read("other.nii.gz").array, volume.array)
 libraries = pathlib.Path(tetwarp.__file__).parent.parent / "tetwarp.libs"
 names = {path.name for path in libraries.iterdir()}
 assert all(re.search(r"-[0-9a-f]{8}\.so", name) for name in names), names
-unknown = {re.match(r"lib(.+)-[0-9a-f]{8}", name)[1] for name in names} - set(LICENSES)
+unknown = {re.match(r"(?:lib)?(.+)-[0-9a-f]{8}", name)[1] for name in names} - set(LICENSES)
 assert not unknown, f"find out the licenses of {unknown}, and add them to LICENSES or leave them out"
 used = {name for name in names if name in pathlib.Path("/proc/self/maps").read_text("utf8")}
 print(f"{sys.argv[1:]}: {len(used)} of {len(names)} libraries of the wheel in this process; "

@@ -125,6 +125,25 @@ def test_device_steps_in_flight_have_the_bits_of_single_ones(cupy, volume, mesh,
             assert np.array_equal(first, second)
 
 
+@needs_emulation
+def test_what_a_device_step_in_flight_reads_is_no_output(cupy, volume, mesh, twisted):
+    """Of positions in memory of the host the step has a copy."""
+    memory = np.zeros(volume.shape, np.float32)
+    moved = memory.reshape(-1)[:2 * twisted.size].view(np.float64).reshape(-1, 3)
+    moved[:] = twisted
+    read, out = DeviceArray(), DeviceArray()
+    read.array, out.array = moved, memory
+    with tetwarp.Warper(put(volume.array), *mesh, affine=volume.affine) as warper:
+        warper.begin_step(read)
+        with pytest.raises(ValueError, match="out: shares memory with deformed of a step in flight"):
+            warper.begin_step(twisted, out=out)
+        warper.finish_step()
+        warper.begin_step(moved)
+        warper.begin_step(twisted, out=out)
+        first, second = warper.finish_step(), warper.finish_step()
+    assert np.array_equal(first.volume.array, second.volume.array)
+
+
 SHARED = put(np.zeros((20, 24, 32), np.float32))
 
 

@@ -102,22 +102,60 @@ def test_several_volumes_outputs_and_what_is_beyond(volume, field):
     assert (inside.array[5:] == 9).all() and (inside.array[:, :, 5:] == 9).all()
 
 
+def test_labels_by_the_gaussian_rule_are_those_of_the_warp(volume, mesh):
+    labels = tetwarp.Volume(np.digitize(volume.array, (0.1, 0.3, 0.6)).astype(np.uint8), volume.grid)
+    words = {"interpolator": "labels", "label_rule": "gaussian"}
+    way, matrix = (1.3, -0.7, 2.1), np.eye(4)
+    matrix[:3, 3] = way
+
+    moved = tetwarp.resample(labels, matrix, label_gaussian=(1.4, 2.5), **words)
+
+    warped = tetwarp.warp(labels, *mesh, mesh.points - way, label_gaussian=(1.4, 2.5),
+                          outputs="mask", **words)
+    covered = warped.mask > 0
+    assert covered.mean() > 0.5 and np.array_equal(moved.array[covered], warped.volume[covered])
+    assert (moved.array != tetwarp.resample(labels, matrix, **words).array).any()
+
+
+@pytest.mark.parametrize("interpolator", ["cubic", "bspline", "lanczos"])
+def test_clamped_samples_stay_in_the_range(interpolator, volume):
+    step = tetwarp.Volume((volume.array > 0.2).astype(np.float32), volume.grid)
+    matrix = np.eye(4)
+    matrix[:3, 3] = 0.5 * np.array(volume.grid.spacing)
+
+    keep, clamp = (tetwarp.resample(step, matrix, interpolator=interpolator, overshoot=word).array
+                   for word in ("keep", "clamp"))
+
+    assert keep.min() < -0.01 and keep.max() > 1.01
+    assert np.array_equal(clamp, np.clip(keep, 0, 1))
+
+
 def test_wrong_arguments_are_named(volume, mesh, twisted, field):
     forward = tetwarp.displacement_field(*mesh, twisted, reference=volume, convention="modeling")
     shared = volume.array
     for keywords, message in (
             ({"transform": np.eye(3)}, "transform: expected a Field .* got shape"),
-            ({"transform": 2 * np.eye(4)}, "transform: expected a Field .* 0 0 0 1 as the last row"),
+            ({"transform": 2 * np.eye(4)}, "transform: expected 0 0 0 1 as the last row, got 0 0 0 2"),
+            ({"transform": [[1, 0, 0, 0], [0, 1]]}, "transform: expected an array: "),
+            ({"transform": [field, [[1, 0], [0]]]}, r"transform\[1\]: expected an array: "),
             ({"transform": [field, np.eye(3)]}, r"transform\[1\]: expected a Field"),
             ({"transform": volume}, r"transform: expected displacements, \(z, y, x, 3\)"),
             ({"transform": forward}, 'transform: .* use convention="resampling"'),
-            ({"transform": np.full((4, 4), np.nan)}, "transform: "),
+            ({"transform": np.full((4, 4), np.nan)}, "transform: expected 0 0 0 1 .* got nan nan"),
+            ({"label_gaussian": (3, 2)}, '^label_gaussian: is for label_rule="gaussian", got label_r'),
+            ({"label_gaussian": 2, "label_rule": "gaussian"}, "label_gaussian: expected 2 numbers"),
             ({"interpolator": "cube"}, "interpolator: "), ({"label_rule": "volume"}, "label_rule: "),
             ({"only_in_field": 1}, "only_in_field: expected True or False"),
             ({"out": shared}, "out: shares memory with a source"),
             ({"out": shared.astype(float)}, r"out: expected shape \(20, 24, 32\) of float32")):
         with pytest.raises(ValueError, match=message):
             tetwarp.resample(volume, **{"transform": np.eye(4), **keywords})
+    apart = np.empty_like(shared)
+    for outs, name in (([apart, apart], r"out\[1\]"), ([shared, apart], r"out\[0\]")):
+        with pytest.raises(ValueError, match=name + ": shares memory with a source or another out"):
+            tetwarp.resample([volume, volume], np.eye(4), out=outs)
+    with pytest.raises(ZeroDivisionError):
+        tetwarp.resample(volume, field, progress=lambda fraction: 1 / 0)
     with pytest.raises(tetwarp.Cancelled):
         tetwarp.resample(volume, field, progress=lambda fraction: False)
     with pytest.warns(RuntimeWarning, match="default_value: 300 does not fit uint8"):

@@ -38,8 +38,8 @@ class Csr(NamedTuple):
 
 
 def _is_csr(value: Any) -> bool:
-    """Whether it is a tuple of the members of a Csr, not four rows of numbers. Where each has two
-    numbers, it is one if it can be: one row of two entries.
+    """Whether it is a tuple of the members of a Csr, not four rows of numbers. Where each
+    has length two, it is a Csr if the numbers can be one: a single row of two entries.
     """
     if isinstance(value, Csr):
         return True

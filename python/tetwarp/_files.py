@@ -192,7 +192,6 @@ def read(
         if is_surface:
             return read_surface(name, error)
         check_default(name, "step", step, 0)
-        check_default(name, "axes", axes, "ras")
         check_default(name, "labels", are_labels, False)
         return read_image(name, array, error)
     return Volume(samples, grid_from_core(grid), read_name, nifti)

@@ -7,10 +7,10 @@ from typing import Any, Callable
 import numpy as np
 
 from . import _core
-from ._arrays import floats_of, outs_of, pair_of, renamed
+from ._arrays import floats_of, outs_of, renamed
 from ._fields import Field
 from ._grid import reference_grid
-from ._sources import default_value_of, sources_of, warn_of_rounding
+from ._sources import default_value_of, gaussian_of, sources_of, warn_of_rounding
 from ._values import check_callback, flag_of, integer_of, word_of
 from ._volume import Volume, made_volume
 from ._warper import RENAMED
@@ -18,9 +18,12 @@ from ._warper import RENAMED
 
 def _matrix_of(value: Any, name: str) -> np.ndarray:
     matrix = floats_of(value, name)
-    if matrix.shape != (4, 4) or matrix[3].tolist() != [0, 0, 0, 1]:
-        raise ValueError(f"{name}: expected a Field of displacements, or 4 x 4 numbers with 0 0 0 1 as "
-                         f"the last row, got shape {matrix.shape}")
+    if matrix.shape != (4, 4):
+        raise ValueError(f"{name}: expected a Field of displacements, or 4 x 4 numbers, "
+                         f"got shape {matrix.shape}")
+    if matrix[3].tolist() != [0, 0, 0, 1]:
+        raise ValueError(f"{name}: expected 0 0 0 1 as the last row, got "
+                         + " ".join(f"{number:.15g}" for number in matrix[3]))
     return matrix
 
 
@@ -38,11 +41,18 @@ def _link_of(value: Any, name: str) -> Any:
     return volume.grid._core(), np.ascontiguousarray(volume.array, np.float32)
 
 
+def _is_link(value: Any) -> bool:
+    if isinstance(value, (Field, Volume)):
+        return True
+    try:
+        return np.ndim(value) == 2
+    except ValueError:  # rows of several lengths, which _matrix_of() refuses by name
+        return True
+
+
 def _links_of(transform: Any) -> list[Any]:
     """Transforms one after the other; a list of four rows of numbers is a matrix."""
-    is_chain = isinstance(transform, (list, tuple)) and any(
-        isinstance(one, (Field, Volume)) or np.ndim(one) == 2 for one in transform)
-    if not is_chain:
+    if not (isinstance(transform, (list, tuple)) and any(map(_is_link, transform))):
         return [_link_of(transform, "transform")]
     return [_link_of(one, f"transform[{number}]") for number, one in enumerate(transform)]
 
@@ -75,7 +85,7 @@ def resample(
         or a list of these on one grid
     transform : leads from the output to the source: a 4 x 4 matrix [world]; a Field of
         ``displacement_field``, or a Volume of three components, x y z [world], which moves nothing
-        beyond its grid; or a list of these, of which the first one moves x first
+        beyond its grid, both read as float32; or a list of these, of which the first one moves x first
     spacing, origin, direction, affine : of the grid of an array, see Grid
     interpolator, label_rule, label_gaussian, overshoot : as of Warper; no label_rule ``"volume"``
     default_value : of voxels whose place is beyond the source
@@ -115,7 +125,7 @@ def resample(
     background = default_value_of(default_value, arrays)
     words = {name: word_of(word, name) for name, word in (
         ("interpolator", interpolator), ("label_rule", label_rule), ("overshoot", overshoot))}
-    options = {**words, "label_gaussian": pair_of(label_gaussian, "label_gaussian"),
+    options = {**words, "label_gaussian": gaussian_of(label_gaussian, label_rule),
                "default_value": background, "only_in_field": flag_of(only_in_field, "only_in_field"),
                "threads": integer_of(threads, "threads")}
     check_callback(progress, "progress")

@@ -6,6 +6,7 @@ from typing import Any, Sequence
 
 import numpy as np
 
+from ._arrays import pair_of
 from ._device import type_of
 from ._values import list_of, number_of, warn, word_of
 from ._volume import Volume, volume_of
@@ -47,8 +48,8 @@ def default_value_of(value: Any, sources: Sequence[Any]) -> float:
 
 
 def warn_of_rounding(number: float, sources: Sequence[Any]) -> None:
-    """A warning for each type of samples in which a default value is another number; not of fractions
-    in floats, which the nearest one stands for as for every sample.
+    """A warning for each type of samples in which a default value is another number; none for a fraction
+    in floats, which hold the nearest one, as of every sample.
     """
     for name in dict.fromkeys(map(type_of, sources)):
         if np.dtype(name).kind in "iu":
@@ -62,6 +63,15 @@ def warn_of_rounding(number: float, sources: Sequence[Any]) -> None:
             fits = kept == number if is_whole else bool(np.isfinite(kept) == np.isfinite(number))
         if not fits:
             warn(f"default_value: {number:.15g} does not fit {name}, {kept:.15g} is stored")
+
+
+def gaussian_of(value: Any, label_rule: Any) -> tuple[float, float]:
+    """Standard deviation and cutoff of the label rule "gaussian"; of another one the default ones only."""
+    gaussian = pair_of(value, "label_gaussian")
+    if gaussian != (1.0, 1.0) and label_rule != "gaussian":
+        raise ValueError(
+            f'label_gaussian: is for label_rule="gaussian", got label_rule={label_rule!r}')
+    return gaussian
 
 
 def quantities_of(quantity: Any, count: int) -> list[str]:

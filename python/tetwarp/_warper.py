@@ -15,7 +15,6 @@ from ._arrays import (
     listed_outs,
     maker_of,
     outs_of,
-    pair_of,
     points_of,
     renamed,
     with_remedy,
@@ -24,7 +23,7 @@ from ._device import Device, on_device, type_of
 from ._grid import Grid, make_grid, reference_grid
 from ._mesh import Cells
 from ._result import EXTRAS, WarpResult
-from ._sources import default_value_of, quantities_of, sources_of, warn_of_rounding
+from ._sources import default_value_of, gaussian_of, quantities_of, sources_of, warn_of_rounding
 from ._values import check_callback, flag_of, integer_of, list_of, number_of, word_of
 
 Progress = Callable[[float], Any]
@@ -32,8 +31,8 @@ Progress = Callable[[float], Any]
 _Arrays = Tuple[List[Any], Dict[str, Any], Any]
 #: Names of arguments in the library's errors, and here.
 RENAMED = {"background": "default_value", "filter": "interpolator",
-            "label gaussian": "label_gaussian", "label rule": "label_rule",
-            "quantities": "quantity", "source": "volume", "sources": "volume"}
+           "label gaussian": "label_gaussian", "label rule": "label_rule",
+           "quantities": "quantity", "source": "volume", "sources": "volume"}
 
 
 def extras_of(outputs: Sequence[str], allowed: dict[str, Any]) -> list[str]:
@@ -133,12 +132,9 @@ class Warper:
         device: int = 0,
         threads: int = 0,
     ) -> None:
-        falloff, gaussian = number_of(falloff, "falloff"), pair_of(label_gaussian, "label_gaussian")
+        falloff, gaussian = number_of(falloff, "falloff"), gaussian_of(label_gaussian, label_rule)
         if falloff and outside != "falloff":
             raise ValueError(f'falloff: is for outside="falloff", got outside={outside!r}')
-        if gaussian != (1.0, 1.0) and label_rule != "gaussian":
-            raise ValueError(
-                f'label_gaussian: is for label_rule="gaussian", got label_rule={label_rule!r}')
         given = list(volume) if isinstance(volume, (list, tuple)) else [volume]
         self._device = Device(given[0], "volume") if given and on_device(given[0]) else None
         if self._device is None:
