@@ -52,16 +52,16 @@ std::string shape_text(const std::vector<std::int64_t>& dims) {
 
 /// One point array: [z][y][x], if temporal with time as first axis, with components as last axis if
 /// there are several. Axes of one sample may be left out.
-struct PointArray {
+struct StoredArray {
   h5::Dataset dataset;
   ArrayHeader header;
   std::vector<std::size_t> axes = {2, 1, 0};  ///< of the dataset
   bool has_component_axis = false;
 };
 
-PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::string& name) {
+StoredArray open_array(const VtkhdfInput& file, const Grid& grid, const std::string& name) {
   const h5::Object point_data = h5::open_group(file.root, "PointData");
-  PointArray array;
+  StoredArray array;
   array.dataset = h5::open_dataset(point_data, name);
   array.header.name = name;
   array.header.type = h5::pixel_type_of(array.dataset);
@@ -162,7 +162,7 @@ std::string active_of(const VtkhdfInput& file, const std::vector<std::string>& n
 }
 
 /// The row of the time axis that holds a step of an array.
-std::int64_t time_row(const VtkhdfInput& file, const PointArray& array, std::int64_t step) {
+std::int64_t time_row(const VtkhdfInput& file, const StoredArray& array, std::int64_t step) {
   const std::vector<std::int64_t> offsets = read_point_data_offsets(file, array.header.name);
   const std::int64_t row = offsets.empty() ? step : offsets[static_cast<std::size_t>(step)];
   if (row >= array.dataset.rows()) {
@@ -208,7 +208,7 @@ class VtkhdfSource : public VolumeSource {
  private:
   VtkhdfInput file_;
   Grid grid_;
-  PointArray source_;
+  StoredArray source_;
   std::int64_t row_ = 0;  ///< of the time axis
 };
 }  // namespace
@@ -222,7 +222,7 @@ VolumeHeader read_vtkhdf_header(const std::string& path) {
   const std::vector<std::string> names = numeric_arrays(file, &others);
   header.active = active_of(file, names);
   for (const std::string& name : names) {
-    const PointArray array = open_array(file, header.grid, name);
+    const StoredArray array = open_array(file, header.grid, name);
     header.arrays.push_back(array.header);
     const h5::Dataset& dataset = array.dataset;
     if (dataset.type_class == H5T_FLOAT && dataset.type_size < 4) header.widened.push_back(name);
