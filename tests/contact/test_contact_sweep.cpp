@@ -19,7 +19,7 @@ namespace tetwarp::test {
 namespace {
 using Eigen::Index;
 
-const ContactOptions variants[] = {
+const ContactOptions option_variants[] = {
     {},
     {.rule = AdhesionRule::restrictive},
     {.law = FrictionLaw::pyramid},
@@ -84,7 +84,7 @@ TEST_P(ContactSweep, HasTheBitsOfTheSequence) {
   const std::vector<std::int64_t> one_run = {
       0, static_cast<std::int64_t>(stages.system.constants.size())};
   ASSERT_LT(stages.colors().size, 6);
-  for (const ContactOptions& options : variants) {
+  for (const ContactOptions& options : option_variants) {
     const Swept sequence = sweep(CpuExec(1), stages, options, view_of(one_run), 5);
 
     EXPECT_EQ(sweep(CpuExec(1), stages, options, stages.colors(), 5), sequence);
@@ -99,7 +99,7 @@ TEST_P(ContactSweep, FollowsTheDenseDelassusMatrix) {
     const ContactProblem problem = row_of_bodies(62, bodies, GetParam());
     const ContactStages stages(problem);
     const reference::DenseContacts dense = reference::make_dense(problem);
-    for (const ContactOptions& options : variants) {
+    for (const ContactOptions& options : option_variants) {
       Eigen::VectorXd impulse = Eigen::VectorXd::Zero(dense.free_velocity.size());
       for (int s = 0; s < 4; ++s) {
         for (std::size_t slot = 0; slot < stages.system.constants.size(); ++slot) {

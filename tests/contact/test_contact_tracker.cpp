@@ -14,8 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-constexpr double dt = 0.01;
-
 BodyPose moved(double x, double y, double z) {
   return {{x, y, z}, {1, 0, 0, 0}};
 }
@@ -27,18 +25,6 @@ ContactSolution impulses(const std::vector<double>& impulse) {
   return solution;
 }
 
-ContactSolution rest(std::size_t contacts) {
-  return impulses(std::vector<double>(3 * contacts));
-}
-
-/// One whole step in which nothing moves.
-void step(ContactTracker& tracker,
-          const std::vector<ReportedContact>& reports,
-          const std::vector<BodyPose>& poses = {2, BodyPose{}}) {
-  const std::size_t count = tracker.begin_step(reports, poses, dt).size();
-  tracker.end_step(rest(count), poses);
-}
-
 TEST(ContactTracker, TouchingGivesTheInitialIntensityAndAnApproachDoesNot) {
   ContactTracker tracker(glue());
   step(tracker, {at(0, 0), at(1, 1, 1e-3)});
@@ -46,7 +32,7 @@ TEST(ContactTracker, TouchingGivesTheInitialIntensityAndAnApproachDoesNot) {
   EXPECT_EQ(tracker.records()[0].intensity, 1);
   EXPECT_EQ(tracker.records()[1].intensity, 0);
 
-  tracker.begin_step(std::vector{at(0, 0), at(1, 1, 1e-3)}, std::vector<BodyPose>(2), dt);
+  tracker.begin_step(std::vector{at(0, 0), at(1, 1, 1e-3)}, std::vector<BodyPose>(2), report_step);
   tracker.end_step(impulses({0, 0, 0, 1e-3, 0, 0}), std::vector<BodyPose>(2));
 
   EXPECT_EQ(tracker.records()[1].intensity, 1);
@@ -59,7 +45,7 @@ TEST(ContactTracker, AContactThatLetGoDoesNotBondAtOnceWhereItStillTouches) {
   ContactTracker tracker(options);
   step(tracker, {at(0, 0)});
   const std::vector<BodyPose> slid = {moved(0, 0, 0), moved(0.1, 0, 0)};
-  tracker.begin_step(std::vector{at(0, 0)}, slid, dt);
+  tracker.begin_step(std::vector{at(0, 0)}, slid, report_step);
 
   const AdhesionStep torn = tracker.end_step(rest(1), slid);
 
@@ -76,7 +62,8 @@ TEST(ContactTracker, KeepsContactsThatAdhereAndRemovesOthers) {
   ContactTracker tracker(glue());
   step(tracker, {at(0, 0), at(1, 1, 1e-3)});
 
-  const auto& contacts = tracker.begin_step({}, std::vector{moved(0, 0, 0), moved(0, 0, 5e-3)}, dt);
+  const auto& contacts =
+      tracker.begin_step({}, std::vector{moved(0, 0, 0), moved(0, 0, 5e-3)}, report_step);
 
   ASSERT_EQ(contacts.size(), 1U);
   EXPECT_FALSE(contacts[0].is_reported);
@@ -96,8 +83,8 @@ TEST(ContactTracker, NeitherOrderOfReportsNorOfBodiesMatters) {
   const std::vector<BodyPose> poses(2);
   ContactTracker one(glue()), other(glue());
 
-  const auto& contacts = one.begin_step(reports, poses, dt);
-  const auto& same = other.begin_step(turned, poses, dt);
+  const auto& contacts = one.begin_step(reports, poses, report_step);
+  const auto& same = other.begin_step(turned, poses, report_step);
 
   ASSERT_EQ(same.size(), contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -144,7 +131,7 @@ TEST(ContactTracker, OtherBodiesInheritNothing) {
   ReportedContact other = at(0, 0, 1e-3);
   other.key.body_a = 2;
 
-  const auto& contacts = tracker.begin_step(std::vector{other}, poses, dt);
+  const auto& contacts = tracker.begin_step(std::vector{other}, poses, report_step);
 
   ASSERT_EQ(contacts.size(), 2U);
   EXPECT_EQ(tracker.records()[1].intensity, 0);
@@ -159,7 +146,7 @@ TEST(ContactTracker, MeasuresTangentialGapsBetweenTheMaterialPoints) {
   const double c = std::numbers::sqrt2 / 2;
   const std::vector<BodyPose> poses = {{{0, 0, 0}, turn}, {{1e-3 * c, 2e-3, -1e-3 * c}, turn}};
 
-  const TrackedContact contact = tracker.begin_step({}, poses, dt).front();
+  const TrackedContact contact = tracker.begin_step({}, poses, report_step).front();
 
   EXPECT_NEAR(contact.gap[0], 0, 1e-18);
   EXPECT_NEAR(norm(contact.gap), std::hypot(1e-3, 2e-3), 1e-17);
@@ -172,11 +159,12 @@ TEST(ContactTracker, GuessesTheLastImpulseInWhateverAxes) {
   ReportedContact report = at(0, 0);
   report.tangent = {1, 0, 0};
   const std::vector<BodyPose> poses(2);
-  tracker.begin_step(std::vector{report}, poses, dt);
+  tracker.begin_step(std::vector{report}, poses, report_step);
   tracker.end_step(impulses({3, 2, 0}), poses);
   report.tangent = {0, -1, 0.5};
 
-  const TrackedContact contact = tracker.begin_step(std::vector{report}, poses, dt).front();
+  const TrackedContact contact =
+      tracker.begin_step(std::vector{report}, poses, report_step).front();
   ContactProblem problem;
   tracker.fill(problem);
 
@@ -194,13 +182,13 @@ TEST(ContactTracker, BondsThatFormKeepTheForce) {
   ContactTracker tracker(options);
   step(tracker, {at(0, 0)});
   const std::vector<BodyPose> slid = {moved(0, 0, 0), moved(1e-4, 2e-4, 0)};
-  const Point3 before = tracker.begin_step(std::vector{at(1e-4, 0)}, slid, dt).front().gap;
+  const Point3 before = tracker.begin_step(std::vector{at(1e-4, 0)}, slid, report_step).front().gap;
 
   tracker.end_step(impulses({1e-2 * report_area * 1e4, 0, 0}), slid);
 
   const double beta = tracker.records()[0].intensity;
-  ASSERT_NEAR(beta, 1, 1e-12);  // 0.5 + dt r p with p = 10 kPa
-  const Point3 after = tracker.begin_step(std::vector{at(1e-4, 0)}, slid, dt).front().gap;
+  ASSERT_NEAR(beta, 1, 1e-12);  // 0.5 + report_step r p with p = 10 kPa
+  const Point3 after = tracker.begin_step(std::vector{at(1e-4, 0)}, slid, report_step).front().gap;
   EXPECT_NEAR(after[1], before[1] / 4, 1e-17);
   EXPECT_NEAR(after[2], before[2] / 4, 1e-17);
 }
@@ -209,7 +197,7 @@ TEST(ContactTracker, FillsAProblemThatPassesTheChecks) {
   ContactTracker tracker(glue());
   step(tracker, {at(0, 0), at(1, 1)});
   tracker.begin_step(std::vector{at(0, 0, 1e-3), at(2, 2)},
-                     std::vector{moved(0, 0, 0), moved(1e-4, 0, 1e-3)}, dt);
+                     std::vector{moved(0, 0, 0), moved(1e-4, 0, 1e-3)}, report_step);
 
   ContactProblem problem;
   tracker.fill(problem);
@@ -234,7 +222,7 @@ TEST(ContactTracker, RefusesWhatItCannotFollow) {
   ContactTracker tracker(glue());
   const std::vector<BodyPose> poses(2);
   const auto begin = [&](const std::vector<ReportedContact>& reports) {
-    tracker.begin_step(reports, poses, dt);
+    tracker.begin_step(reports, poses, report_step);
   };
   ReportedContact itself = at(0, 0), nowhere = at(0, 0), bent = at(0, 0), odd = at(0, 0);
   itself.key = {1, 0, 1, 2};

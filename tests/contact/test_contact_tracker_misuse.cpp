@@ -12,22 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-constexpr double dt = 0.01;
-
-ContactSolution rest(std::size_t contacts) {
-  ContactSolution solution;
-  solution.impulse.assign(3 * contacts, 0);
-  solution.velocity = solution.impulse;
-  return solution;
-}
-
-/// One whole step in which nothing moves.
-void step(ContactTracker& tracker, const std::vector<ReportedContact>& reports) {
-  const std::vector<BodyPose> poses(2);
-  const std::size_t count = tracker.begin_step(reports, poses, dt).size();
-  tracker.end_step(rest(count), poses);
-}
-
 /// The text of the exception of type Error that a call throws, or "no error".
 template <class Error, class Call>
 std::string refusal(const Call& call) {
@@ -59,7 +43,7 @@ TEST(ContactTracker, RefusesToEndAStepThatHasNotBegun) {
 TEST(ContactTracker, ContactsStayValidUntilTheNextStep) {
   ContactTracker tracker(glue());
   const std::vector<BodyPose> poses(2);
-  const auto& contacts = tracker.begin_step(std::vector{at(0, 0), at(1, 1)}, poses, dt);
+  const auto& contacts = tracker.begin_step(std::vector{at(0, 0), at(1, 1)}, poses, report_step);
 
   tracker.end_step(rest(2), poses);
 
@@ -72,7 +56,7 @@ TEST(ContactTracker, StoresNoImpulsesThatAreNotFinite) {
   for (const double bad : {std::nan(""), HUGE_VAL}) {
     for (const std::size_t row : {0U, 2U}) {
       ContactTracker tracker(glue());
-      tracker.begin_step(std::vector{at(0, 0)}, poses, dt);
+      tracker.begin_step(std::vector{at(0, 0)}, poses, report_step);
       ContactSolution impulse = rest(1), velocity = rest(1);
       impulse.impulse[row] = velocity.velocity[row] = bad;
 
@@ -101,16 +85,19 @@ TEST(ContactTracker, RefusesPosesAndStepsThatAreNotFinite) {
   long_one[1].rotation = {2, 0, 0, 0};
   rounded[1].rotation[0] = 1 + 1e-7;
 
-  EXPECT_NE(begin(nowhere, dt).find("the pose of body 1 has a position that is not finite"),
+  EXPECT_NE(
+      begin(nowhere, report_step).find("the pose of body 1 has a position that is not finite"),
+      std::string::npos);
+  EXPECT_NE(begin(turned, report_step).find("the pose of body 1 has a rotation"),
             std::string::npos);
-  EXPECT_NE(begin(turned, dt).find("the pose of body 1 has a rotation"), std::string::npos);
-  EXPECT_NE(begin(long_one, dt).find("of length 2, expected 1 within 1e-6"), std::string::npos);
-  EXPECT_EQ(begin(rounded, dt), "no error");
-  for (const double time_step : {0.0, -dt, HUGE_VAL, std::nan("")}) {
+  EXPECT_NE(begin(long_one, report_step).find("of length 2, expected 1 within 1e-6"),
+            std::string::npos);
+  EXPECT_EQ(begin(rounded, report_step), "no error");
+  for (const double time_step : {0.0, -report_step, HUGE_VAL, std::nan("")}) {
     EXPECT_NE(begin(good, time_step).find("time_step"), std::string::npos) << time_step;
   }
   ContactTracker tracker(glue());
-  tracker.begin_step(std::vector{at(0, 0)}, good, dt);
+  tracker.begin_step(std::vector{at(0, 0)}, good, report_step);
   EXPECT_THROW(tracker.end_step(rest(1), long_one), std::invalid_argument);
   EXPECT_NO_THROW(tracker.end_step(rest(1), good));
 }
@@ -124,7 +111,7 @@ TEST(ContactTracker, RefusesRecordsAndReportsThatAreNotFinite) {
   moving.surface_velocity[0] = HUGE_VAL;
   closing.approach_speed = std::nan("");
   for (const ReportedContact& report : {moving, closing}) {
-    EXPECT_THROW(tracker.begin_step(std::vector{report}, std::vector<BodyPose>(2), dt),
+    EXPECT_THROW(tracker.begin_step(std::vector{report}, std::vector<BodyPose>(2), report_step),
                  std::invalid_argument);
   }
   ContactTrackerOptions lively = glue();
@@ -137,7 +124,7 @@ TEST(ContactTracker, NamesTheContactThatItRefuses) {
   const std::vector<BodyPose> poses(2);
   ReportedContact second = at(1, 7);
   try {
-    tracker.begin_step(std::vector{at(0, 3), second, at(2, 7)}, poses, dt);
+    tracker.begin_step(std::vector{at(0, 3), second, at(2, 7)}, poses, report_step);
     FAIL() << "expected an error";
   } catch (const ContactKeyError& error) {
     EXPECT_EQ(error.key(), (ContactKey{0, 0, 1, 7}));
@@ -145,7 +132,7 @@ TEST(ContactTracker, NamesTheContactThatItRefuses) {
   }
   second.normal = {0, 0, 2};
   EXPECT_NE(refusal<ContactKeyError>([&] {
-              tracker.begin_step(std::vector{second}, poses, dt);
+              tracker.begin_step(std::vector{second}, poses, report_step);
             }).find("has a normal that is not a unit vector"),
             std::string::npos);
 }

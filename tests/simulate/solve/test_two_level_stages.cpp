@@ -68,7 +68,7 @@ struct Stages {
 };
 
 template <class Check>
-void at_all_sizes(const Check& check) {
+void stages_at_all_sizes(const Check& check) {
   for (const std::int32_t size : {0, 1, 31, 32, 33, 1025}) {
     SCOPED_TRACE(size);
     Stages stages(size);
@@ -77,7 +77,7 @@ void at_all_sizes(const Check& check) {
 }
 
 TEST(TwoLevelStages, StartIsThatOfTheRowsInTheSystem) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     const Vector free = s.step.vector(3 * (s.step.system_count() + 1));
     Vector velocity = unset(s.size), weight = velocity, expected = velocity;
     each(s.size, RowStartOp{s.step.system_row(), s.step.system(), s.step.values(), read(free),
@@ -95,7 +95,7 @@ TEST(TwoLevelStages, StartIsThatOfTheRowsInTheSystem) {
 }
 
 TEST(TwoLevelStages, BodiesMoveByTheirInverses) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     const Vector push = s.step.vector(3 * s.size), from = s.step.vector(3 * s.size);
     Vector moved = unset(s.size), to = moved;
     each_by_lanes(s.size, ComplianceOp{s.of, read(push), write(moved)});
@@ -109,7 +109,7 @@ TEST(TwoLevelStages, BodiesMoveByTheirInverses) {
 }
 
 TEST(TwoLevelStages, NodesMoveByTheInversesOfTheirRows) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     const Vector push = s.step.vector(3 * s.nodes), from = s.step.vector(3 * s.nodes);
     const Vector expected =
         s.step.picks * Vector(s.step.inverses * Vector(s.step.picks.transpose() * push));
@@ -126,7 +126,7 @@ TEST(TwoLevelStages, NodesMoveByTheInversesOfTheirRows) {
 }
 
 TEST(TwoLevelStages, ContactsPushRowsAndMoveWithThem) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     const Vector velocity = s.step.vector(3 * s.size), after = s.step.vector(3 * s.size);
     const Vector before = s.step.vector(3 * s.size);
     Vector of_contacts = unset(s.size), push = of_contacts, defect = of_contacts;
@@ -150,7 +150,7 @@ TEST(TwoLevelStages, ContactsPushRowsAndMoveWithThem) {
 }
 
 TEST(TwoLevelStages, ErrorsAreScalarProducts) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     const Vector a = s.step.vector(3 * s.size), b = s.step.vector(3 * s.size);
     const Vector free = s.step.vector(3 * s.size);
     std::vector<ContactConstants<double>> constants(index_of(s.size));
@@ -171,7 +171,7 @@ TEST(TwoLevelStages, ErrorsAreScalarProducts) {
 }
 
 TEST(TwoLevelStages, JacobiansAreTurnedIntoFrames) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     std::vector<double> turned(s.step.turned().size());
     each(s.step.block_count(), TurnJacobianOp{s.of, s.touching, view(turned)});
     for (std::size_t i = 0; i < turned.size(); ++i)
@@ -180,7 +180,7 @@ TEST(TwoLevelStages, JacobiansAreTurnedIntoFrames) {
 }
 
 TEST(TwoLevelStages, PartsPushNodesAndMoveWithThem) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     const Vector of_parts = s.step.vector(3 * s.step.part_count());
     const Vector after = s.step.vector(3 * s.size), before = s.step.vector(3 * s.size);
     const Vector velocity = s.step.vector(3 * s.nodes);
@@ -204,7 +204,7 @@ TEST(TwoLevelStages, PartsPushNodesAndMoveWithThem) {
 }
 
 TEST(TwoLevelStages, MajorantsAreScaledDiagonals) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     std::vector<ContactConstants<double>> constants(index_of(s.size)), majorant = constants;
     Vector diagonal = unset(s.step.part_count()), vector = diagonal;
     each(s.size, OwnBlockOp{s.contacts, view(constants), write(diagonal), write(vector)});
@@ -247,7 +247,7 @@ TEST(TwoLevelStages, MajorantsAreScaledDiagonals) {
 
 /// Bodies whose nodes move by a factor of their pushes, within the limits and beyond them.
 TEST(TwoLevelStages, ScalesOfBodiesAreEigenvaluesWithinTheirLimits) {
-  at_all_sizes([](Stages& s) {
+  stages_at_all_sizes([](Stages& s) {
     const Vector push = s.step.vector(3 * s.nodes), before = 0.5 * push;
     Vector after = before, scale = Vector::Constant(s.of.bodies.size, -7), expected = scale;
     for (std::int64_t b = 0; b < s.of.bodies.size; ++b) {
