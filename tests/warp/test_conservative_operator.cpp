@@ -15,18 +15,11 @@
 
 #include "tests/support/hex_scenes.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/operator_samples.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {
-using Samples = std::vector<double>;
-
-Samples random_samples(const Grid& grid, std::uint64_t seed, std::int64_t components = 1) {
-  Samples samples(static_cast<std::size_t>(grid.voxel_count() * components));
-  for (std::size_t s = 0; s < samples.size(); ++s) samples[s] = scenes::uniform(seed, s) - 0.5;
-  return samples;
-}
-
 std::vector<std::uint8_t> random_mask(const Grid& grid) {
   std::vector<std::uint8_t> mask(static_cast<std::size_t>(grid.voxel_count()));
   for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = scenes::uniform(9, v) < 0.5;
@@ -45,20 +38,6 @@ WarpOperator operator_of(const scenes::Scene& scene,
            .threads = threads}};
 }
 
-Samples forward_of(const WarpOperator& warp, const Samples& x) {
-  const auto components = std::ssize(x) / warp.source_grid().voxel_count();
-  Samples y(static_cast<std::size_t>(warp.output_grid().voxel_count() * components), NAN);
-  warp.forward(x, y);
-  return y;
-}
-
-Samples adjoint_of(const WarpOperator& warp, const Samples& y) {
-  const auto components = std::ssize(y) / warp.output_grid().voxel_count();
-  Samples x(static_cast<std::size_t>(warp.source_grid().voxel_count() * components), NAN);
-  warp.adjoint(y, x);
-  return x;
-}
-
 Samples warped_by(Backend backend, const scenes::Scene& scene, const Samples& x) {
   WarpOptions options{.intensity = Intensity::conservative, .output_grid = scene.output_grid};
   options.backend = backend;
@@ -70,14 +49,6 @@ Samples warped_by(Backend backend, const scenes::Scene& scene, const Samples& x)
   void* const data = y.data();
   warper.step(scene.deformed, {.volumes = std::span(&data, 1)});
   return y;
-}
-
-double dot_of(const Samples& a, const Samples& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-double length_of(const Samples& a) {
-  return std::sqrt(dot_of(a, a));
 }
 
 scenes::Scene hex_scene() {

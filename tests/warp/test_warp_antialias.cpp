@@ -15,7 +15,7 @@ constexpr std::array averaging_filters = {Filter::linear, Filter::cubic, Filter:
 
 /// Shrunk by seven tenths and waved, on a turned grid; and by forty, which exceeds the limit of
 /// samples per voxel.
-std::vector<scenes::Scene> shrunk_scenes() {
+std::vector<scenes::Scene> much_shrunk_scenes() {
   const Grid grid = scenes::oblique_grid(20, 17, 19);
   std::vector<scenes::Scene> scenes;
   for (const double share : {0.3, 1.0 / 40}) {
@@ -35,7 +35,7 @@ std::vector<scenes::Scene> shrunk_scenes() {
 
 /// float32 sums are rounded once: half an ulp of a value up to 2, and 2^-48 of its position.
 TEST(WarpAntialias, IsTheReference) {
-  for (const scenes::Scene& scene : shrunk_scenes()) {
+  for (const scenes::Scene& scene : much_shrunk_scenes()) {
     const Volume narrow = scenes::wavy_volume(scene.source_grid, PixelType::float32, 2);
     const Volume wide = scenes::wavy_volume(scene.source_grid, PixelType::float64);
     for (const Filter filter : averaging_filters) {

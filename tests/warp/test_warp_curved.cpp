@@ -18,8 +18,8 @@
 
 namespace tetwarp::test {
 namespace {
-constexpr std::int64_t edge = 24;  ///< of the volumes [voxel]
-const Grid grid = scenes::unit_grid(edge, edge, edge);
+constexpr std::int64_t volume_edge = 24;  ///< of the volumes [voxel]
+const Grid grid = scenes::unit_grid(volume_edge, volume_edge, volume_edge);
 
 class WarpCurved : public EachBackend {
  protected:
@@ -58,7 +58,8 @@ Volume ramp(std::size_t axis) {
   Volume volume = make_volume(grid, PixelType::float64);
   const auto samples = volume.samples<double>();
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    const std::size_t index[3] = {s % edge, s / edge % edge, s / edge / edge};
+    const std::size_t index[3] = {s % volume_edge, s / volume_edge % volume_edge,
+                                  s / volume_edge / volume_edge};
     samples[s] = static_cast<double>(index[axis]);
   }
   return volume;
@@ -79,8 +80,8 @@ double distance(const Point3& a, const Point3& b) {
 }
 
 Point3 index_of(std::size_t v) {
-  return {static_cast<double>(v % edge), static_cast<double>(v / edge % edge),
-          static_cast<double>(v / edge / edge)};
+  return {static_cast<double>(v % volume_edge), static_cast<double>(v / volume_edge % volume_edge),
+          static_cast<double>(v / volume_edge / volume_edge)};
 }
 
 /// Positions are multiples of a quantum, so that the quadratic map of every cell is the motion.
@@ -260,7 +261,7 @@ TEST_P(WarpCurved, HasTheBitsOfTheWholeInRegionsAndUpdates) {
   for (std::int64_t k = region.begin[2]; k < region.end[2]; ++k) {
     for (std::int64_t j = region.begin[1]; j < region.end[1]; ++j) {
       for (std::int64_t i = region.begin[0]; i < region.end[0]; ++i, ++p) {
-        const auto v = static_cast<std::size_t>((k * edge + j) * edge + i);
+        const auto v = static_cast<std::size_t>((k * volume_edge + j) * volume_edge + i);
         ASSERT_EQ(part.volume.samples<std::int16_t>()[p], whole.volume.samples<std::int16_t>()[v]);
       }
     }
@@ -291,7 +292,7 @@ TEST_P(WarpCurved, RefusesWhatItDoesNotMap) {
             "quantities of vectors and tensors turn by affine maps" + end);
   EXPECT_EQ(message_of([&] {
               Warper warper(std::array{VolumeView(source)}, mesh, {.backend = GetParam()});
-              std::vector<float> forward(3 * edge * edge * edge);
+              std::vector<float> forward(3 * volume_edge * volume_edge * volume_edge);
               Volume volume = make_volume(grid, PixelType::float32, 3);
               void* const data = volume.data.data();
               warper.step(mesh.mesh.rest_positions,

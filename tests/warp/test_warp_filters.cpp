@@ -24,7 +24,7 @@ class WarpFilters : public EachBackend {
 };
 INSTANTIATE_TEST_SUITE_P(Backends, WarpFilters, each_backend, name_of_backend);
 
-constexpr std::array wide_filters = {Filter::cubic, Filter::bspline, Filter::lanczos};
+constexpr std::array smooth_filters = {Filter::cubic, Filter::bspline, Filter::lanczos};
 
 /// Positions are good to 2e-6 voxel; samples below 1, neighbors differing by less than 1/8 per
 /// axis, make slopes of at most six times that. Weights and sums of float32 cost less than 60 ulp.
@@ -36,7 +36,7 @@ TEST_P(WarpFilters, AreTheReference) {
     const scenes::Scene scene = scenes::adversarial_scene(name, 18);
     const Volume narrow = scenes::wavy_volume(scene.source_grid, PixelType::float32, 2);
     const Volume wide = scenes::wavy_volume(scene.source_grid, PixelType::float64);
-    for (const Filter filter : wide_filters) {
+    for (const Filter filter : smooth_filters) {
       const WarpOptions options{.filter = filter, .outside = Outside::identity, .background = -3};
       const auto error_of = [&](const Volume& source) {
         return largest_difference(run(source, scene, options).volume,
@@ -52,7 +52,7 @@ TEST_P(WarpFilters, AreTheReference) {
 
 TEST_P(WarpFilters, RoundIntegersToTheNearestAndSaturate) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 18);
-  for (const Filter filter : wide_filters) {
+  for (const Filter filter : smooth_filters) {
     for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint32}) {
       Volume source = make_volume(scene.source_grid, type);
       with_pixel_type(type, [&]<class T>(T) {
@@ -113,7 +113,7 @@ TEST_P(WarpFilters, ClampOvershootToEachComponentsRange) {
     const bool is_high = scenes::uniform(96, s / 2) < 0.5;
     source.samples<float>()[s] = s % 2 == 0 ? (is_high ? 5.0f : 3.0f) : (is_high ? 200.0f : 100.0f);
   }
-  for (const Filter filter : wide_filters) {
+  for (const Filter filter : smooth_filters) {
     const Warped free = run(source, scene, {.filter = filter, .background = 4});
     const Warped clamped =
         run(source, scene, {.filter = filter, .overshoot = Overshoot::clamp, .background = 4});
@@ -137,7 +137,7 @@ TEST_P(WarpFilters, KeepWhatIsNotANumberWhereItBelongs) {
   const auto samples = source.samples<float>();
   samples[samples.size() / 2 + 12] = std::numeric_limits<float>::quiet_NaN();
   samples[samples.size() / 3] = std::numeric_limits<float>::infinity();
-  for (const Filter filter : wide_filters) {
+  for (const Filter filter : smooth_filters) {
     for (const Overshoot overshoot : {Overshoot::keep, Overshoot::clamp}) {
       const WarpOptions options{.filter = filter, .overshoot = overshoot};
       const auto values = numbers_of(run(source, scene, options).volume);

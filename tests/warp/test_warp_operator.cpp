@@ -17,42 +17,13 @@
 
 #include "tests/support/hex_scenes.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/operator_samples.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {
-using Samples = std::vector<double>;
-
 constexpr Filter linear_filters[] = {Filter::nearest, Filter::linear, Filter::cubic,
                                      Filter::bspline, Filter::lanczos};
-
-Samples random_samples(const Grid& grid, std::uint64_t seed, std::int64_t components = 1) {
-  Samples samples(static_cast<std::size_t>(grid.voxel_count() * components));
-  for (std::size_t s = 0; s < samples.size(); ++s) samples[s] = scenes::uniform(seed, s) - 0.5;
-  return samples;
-}
-
-double dot_of(const Samples& a, const Samples& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-double length_of(const Samples& a) {
-  return std::sqrt(dot_of(a, a));
-}
-
-Samples forward_of(const WarpOperator& warp, const Samples& x) {
-  const auto components = std::ssize(x) / warp.source_grid().voxel_count();
-  Samples y(static_cast<std::size_t>(warp.output_grid().voxel_count() * components), NAN);
-  warp.forward(x, y);
-  return y;
-}
-
-Samples adjoint_of(const WarpOperator& warp, const Samples& y) {
-  const auto components = std::ssize(y) / warp.output_grid().voxel_count();
-  Samples x(static_cast<std::size_t>(warp.source_grid().voxel_count() * components), NAN);
-  warp.adjoint(y, x);
-  return x;
-}
 
 WarpOptions reference_options(const WarpOperatorOptions& options) {
   WarpOptions all{.filter = options.filter};
