@@ -106,7 +106,7 @@ TEST(WarpEmulated, OutputsOnTheDeviceCostNoCopy) {
 }
 
 TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
-  const scenes::Scene scene = scenes::adversarial_scene("tiny", 9);
+  const scenes::Scene scene = scenes::adversarial_scene("tiny", 13);
   const std::vector<Volume> sources = sources_of(scene);
   std::vector<Point3> small = scene.deformed;
   for (Point3& p : small) {

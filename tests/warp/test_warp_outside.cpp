@@ -168,7 +168,7 @@ void expect_reference(const scenes::Scene& scene, Backend backend, const WarpOpt
 
 TEST_P(WarpOutside, AgreesWithAllTrianglesOfTheReference) {
   for (const char* name : {"waved", "rotated", "oblique", "other_grid", "slivers_1"}) {
-    const scenes::Scene scene = scenes::adversarial_scene(name, 8);
+    const scenes::Scene scene = scenes::adversarial_scene(name, 10);
     const double distance = 3 * scene.output_grid.spacing[0];
     expect_reference(scene, GetParam(), {.outside = Outside::nearest});
     expect_reference(scene, GetParam(), {.outside = Outside::falloff, .falloff = distance});
