@@ -9,7 +9,7 @@
 #include "host/warp/grid_point_masks.hpp"
 #include "host/warp/pair_state.hpp"
 #include "kernels/warp/tet_moved.hpp"
-#include "kernels/warp/voxel_overlap.hpp"
+#include "kernels/warp/tet_widen.hpp"
 
 namespace tetwarp {
 

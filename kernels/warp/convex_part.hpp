@@ -218,21 +218,4 @@ TETWARP_HD_RARE const ConvexPart* part_in_tet(const TetSetup& tet,
   return now;
 }
 
-/// Sets a tetrahedron's box to all voxels of a frame whose own boxes it intersects; set_box()
-/// includes only those whose centers may be inside.
-TETWARP_HD void widen_box(const TetNodes& tet, const OutputFrame& frame, TetSetup& setup) {
-  constexpr std::int64_t half = quanta_per_voxel / 2;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::int64_t low = tet.x[0][axis], high = low;
-    for (int a = 1; a < 4; ++a) {
-      low = min_of(low, tet.x[a][axis]);
-      high = max_of(high, tet.x[a][axis]);
-    }
-    const std::int64_t first = (low + half) >> quantum_bits, last = (high + half) >> quantum_bits;
-    const std::int64_t begin = frame.begin[axis], end = frame.end[axis];
-    setup.begin[axis] = static_cast<int>(min_of(max_of(first, begin), end));
-    setup.end[axis] = static_cast<int>(max_of(min_of(last + 1, end), begin));
-  }
-}
-
 }  // namespace tetwarp

@@ -7,7 +7,7 @@
 #include "kernels/warp/cell_list.hpp"
 #include "kernels/warp/node_quantize.hpp"
 #include "kernels/warp/tet_moved.hpp"
-#include "kernels/warp/voxel_overlap.hpp"
+#include "kernels/warp/tet_widen.hpp"
 
 namespace tetwarp {
 

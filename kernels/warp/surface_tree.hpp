@@ -83,10 +83,10 @@ TETWARP_HD double nearest_along(const double* from, const double* to, const doub
 
 /// The nearest point of a triangle: of its edges, or within it. The edges are always tried, since
 /// the weights within a thin triangle are inaccurate; any weights are those of one of its points.
-TETWARP_HD void take_triangle(const SurfaceTree& tree,
-                              std::int64_t triangle,
-                              const double* x,
-                              NearestSurfacePoint& nearest) {
+TETWARP_HD_RARE void take_triangle(const SurfaceTree& tree,
+                                   std::int64_t triangle,
+                                   const double* x,
+                                   NearestSurfacePoint& nearest) {
   const SurfaceNode* corners[3];
   for (int c = 0; c < 3; ++c) corners[c] = &tree.nodes[tree.triangles[3 * triangle + c]];
   const double *a = corners[0]->at, *b = corners[1]->at, *c = corners[2]->at;
@@ -124,9 +124,9 @@ TETWARP_HD double box_distance2(const SurfaceBox& box, const double* x) {
 /// Goes down to the nearer child first; the bits of `trail` tell on which levels the other one has
 /// been visited. Source: A. Áfra and L. Szirmay-Kalos, "Stackless multi-BVH traversal for CPU, MIC
 /// and GPU ray tracing", 2014.
-TETWARP_HD void find_nearest(const SurfaceTree& tree,
-                             const double* x,
-                             NearestSurfacePoint& nearest) {
+TETWARP_HD_RARE void find_nearest(const SurfaceTree& tree,
+                                  const double* x,
+                                  NearestSurfacePoint& nearest) {
   const std::int64_t leaves = tree.leaves();
   const SurfaceBox& all = tree.boxes[1];
   double size = 0;

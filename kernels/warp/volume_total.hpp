@@ -6,6 +6,7 @@
 #include "kernels/base/any_number.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/warp/convex_part.hpp"
+#include "kernels/warp/tet_widen.hpp"
 
 namespace tetwarp {
 
