@@ -109,10 +109,10 @@ if(TETWARP_IO)
     bench/measure/program.cpp
     bench/measure/row.cpp
     bench/measure/timing.cpp
-    tests/support/contact_scenes.cpp
-    tests/support/contact_scenes_lattice.cpp
-    tests/support/contact_scenes_slab.cpp
-    tests/support/contact_scenes_tray.cpp
+    tests/support/contact/contact_scenes.cpp
+    tests/support/contact/contact_scenes_lattice.cpp
+    tests/support/contact/contact_scenes_slab.cpp
+    tests/support/contact/contact_scenes_tray.cpp
     tests/support/scenes.cpp)
   target_include_directories(tetwarp_bench_contact PRIVATE
     ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)

@@ -24,10 +24,12 @@ tetwarp_sources(tetwarp_command host/cli/tools
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
-  batch.cpp batch_file.cpp batch_list.cpp batch_order.cpp block_warper.cpp cmd_warp.cpp job_process.cpp
-  job_share.cpp part_exchange.cpp
-  part_queue.cpp report_exchange.cpp series_in_parts.cpp step_writer.cpp transform_job.cpp
-  transform_run.cpp volume_blocks.cpp volume_run.cpp volume_sources.cpp volume_steps.cpp volume_task.cpp warp_job.cpp)
+  batch.cpp batch_file.cpp batch_list.cpp batch_order.cpp cmd_warp.cpp job_process.cpp
+  job_share.cpp transform_job.cpp transform_run.cpp warp_job.cpp)
+tetwarp_sources(tetwarp_command host/cli/warp/volumes
+  block_warper.cpp part_exchange.cpp part_queue.cpp report_exchange.cpp series_in_parts.cpp
+  step_writer.cpp volume_blocks.cpp volume_run.cpp volume_sources.cpp volume_steps.cpp
+  volume_task.cpp)
 set_target_properties(tetwarp_command PROPERTIES
   OUTPUT_NAME tetwarp UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_command PRIVATE ${PROJECT_SOURCE_DIR})

@@ -55,10 +55,12 @@ tetwarp_sources(tetwarp host/reference/warp
   backend_reference.cpp map_points_reference.cpp nearest_surface.cpp overlap.cpp sample.cpp
   sample_transform.cpp)
 tetwarp_sources(tetwarp host/scene
-  alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp
-  lattice_search.cpp loft.cpp loft_line.cpp marching_tets.cpp ring_surface.cpp rings.cpp
-  scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp shape_lattice.cpp shape_surface.cpp
-  sheet.cpp surface.cpp surface_lattice.cpp surface_solid.cpp voxel_owner.cpp voxel_shares.cpp)
+  alike_bodies.cpp body_geometry.cpp image_lattice.cpp isosurface.cpp marching_tets.cpp
+  scene_geometry.cpp selection.cpp voxel_owner.cpp voxel_shares.cpp)
+tetwarp_sources(tetwarp host/scene/shapes
+  cage.cpp lattice.cpp lattice_search.cpp loft.cpp loft_line.cpp ring_surface.cpp rings.cpp
+  shape.cpp shape_fraction.cpp shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp
+  surface_lattice.cpp surface_solid.cpp)
 tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
 tetwarp_sources(tetwarp host/simulate/contact_step
@@ -72,10 +74,12 @@ tetwarp_sources(tetwarp host/simulate/model
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
-  added_handles.cpp body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
-  fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
-  simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
+  body_places.cpp body_sleep.cpp divided_step.cpp fastest_body.cpp moving_bodies.cpp simulator.cpp
   step_records.cpp tet_energies.cpp turning_moments.cpp)
+tetwarp_sources(tetwarp host/simulate/state
+  added_handles.cpp checkpoint.cpp checkpoint_bytes.cpp fingerprint.cpp host_state.cpp
+  island_lists.cpp island_sleep.cpp simulated_scene.cpp simulation_state.cpp step_attempt.cpp
+  step_division.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/condensed
   condensed_choice.cpp condensed_island.cpp condensed_matrix.cpp condensed_solver.cpp
   system_islands.cpp)
@@ -108,10 +112,11 @@ tetwarp_sources(tetwarp host/warp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
   backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_plan.cpp
-  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp
-  resample_blocks_cpu.cpp resample_part_cpu.cpp transform_links.cpp voxel_places.cpp
-  warp_operator.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp
-  row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
+  operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp resample_blocks_cpu.cpp
+  resample_part_cpu.cpp transform_links.cpp voxel_places.cpp warp_operator.cpp ALONE
+  cell_cull_cpu.cpp cell_raster_cpu.cpp)
+tetwarp_sources(tetwarp host/warp/cpu/rows
+  ALONE row_label_cpu.cpp row_resample_cpu.cpp row_scalar.cpp row_transform_cpu.cpp)
 tetwarp_sources(tetwarp host/warp/cuda
   backend_${tetwarp_cuda} device_start_${tetwarp_cuda} map_points_${tetwarp_cuda})
 if(TETWARP_HAS_CUDA)
@@ -139,7 +144,8 @@ endforeach()
 # Highway compiles these files once per vector instruction set. SSE4 is left out: its vectors are as
 # wide as those of the baseline (SSSE3), and only processors without AVX2 would use it.
 set_source_files_properties(host/warp/cpu/cell_cull_cpu.cpp host/warp/cpu/cell_raster_cpu.cpp
-  host/warp/cpu/row_label_cpu.cpp host/warp/cpu/row_resample_cpu.cpp host/warp/cpu/row_transform_cpu.cpp
+  host/warp/cpu/rows/row_label_cpu.cpp host/warp/cpu/rows/row_resample_cpu.cpp
+  host/warp/cpu/rows/row_transform_cpu.cpp
   PROPERTIES COMPILE_DEFINITIONS HWY_DISABLED_TARGETS=HWY_SSE4 SKIP_PRECOMPILE_HEADERS ON)
 # A third of the files include Eigen.
 target_precompile_headers(tetwarp PRIVATE <algorithm> <string> <vector> <Eigen/Dense> <Eigen/SparseCore>)

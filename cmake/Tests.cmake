@@ -17,12 +17,12 @@ add_library(tetwarp_support STATIC
   tests/oracles/intersecting_triangles.cpp
   tests/oracles/interval_ccd.cpp
   tests/oracles/triangle_intersection.cpp
-  tests/support/contact_samples.cpp
-  tests/support/contact_scenes.cpp
-  tests/support/contact_scenes_lattice.cpp
-  tests/support/contact_scenes_slab.cpp
-  tests/support/contact_scenes_tray.cpp
-  tests/support/contact_transforms.cpp
+  tests/support/contact/contact_samples.cpp
+  tests/support/contact/contact_scenes.cpp
+  tests/support/contact/contact_scenes_lattice.cpp
+  tests/support/contact/contact_scenes_slab.cpp
+  tests/support/contact/contact_scenes_tray.cpp
+  tests/support/contact/contact_transforms.cpp
   tests/support/elastic_block.cpp
   tests/support/rigid_bodies.cpp
   tests/support/scenes.cpp)

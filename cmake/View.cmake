@@ -2,12 +2,14 @@
 # left out where this is missing. `tetwarp view` then names the package.
 add_library(tetwarp_view_parts STATIC)
 tetwarp_sources(tetwarp_view_parts host/view
-  body_carrier.cpp camera_keys.cpp curve_editor.cpp finger_pair.cpp input_delay.cpp input_device.cpp
-  input_log.cpp live_simulation.cpp live_start.cpp live_volumes.cpp look_surfaces.cpp
-  obstacle_surface.cpp overlay_text.cpp pick.cpp ray_quality.cpp scene_look.cpp
-  simulated_device.cpp slice_look.cpp
-  surface_values.cpp value_colors.cpp view_options.cpp view_scene.cpp view_tools.cpp
-  volume_colors.cpp)
+  body_carrier.cpp camera_keys.cpp curve_editor.cpp finger_pair.cpp input_delay.cpp input_log.cpp
+  live_simulation.cpp live_start.cpp live_volumes.cpp overlay_text.cpp pick.cpp ray_quality.cpp
+  view_options.cpp view_scene.cpp view_tools.cpp volume_colors.cpp)
+tetwarp_sources(tetwarp_view_parts host/view/devices
+  input_device.cpp simulated_device.cpp)
+tetwarp_sources(tetwarp_view_parts host/view/look
+  look_surfaces.cpp obstacle_surface.cpp scene_look.cpp slice_look.cpp surface_values.cpp
+  value_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/screens
   off_axis.cpp room.cpp room_file.cpp scene_sharer.cpp screen_keys.cpp screen_message.cpp
   shared_scene.cpp shared_state.cpp swap_group.cpp)
@@ -104,7 +106,7 @@ if(TETWARP_SPNAV_INCLUDE AND TETWARP_SPNAV_LIBRARY)
   target_include_directories(tetwarp_view_devices SYSTEM PRIVATE ${TETWARP_SPNAV_INCLUDE})
   target_link_libraries(tetwarp_view_devices PRIVATE ${TETWARP_SPNAV_LIBRARY} ${X11_LIBRARIES})
 endif()
-tetwarp_sources(tetwarp_view_devices host/view ${tetwarp_device_sources})
+tetwarp_sources(tetwarp_view_devices host/view/devices ${tetwarp_device_sources})
 target_link_libraries(tetwarp_view_devices PUBLIC tetwarp_view_parts PRIVATE tetwarp_options)
 target_compile_options(tetwarp_view_devices PRIVATE $<$<CONFIG:Release>:-O1>)
 message(STATUS "tetwarp: devices of tetwarp view: ${tetwarp_device_sources}")

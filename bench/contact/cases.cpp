@@ -10,7 +10,7 @@
 #include <tetwarp/names.hpp>
 
 #include "host/contact/sweeps/method_names.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::bench {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/warp/interior_sample.hpp"
+#include "kernels/warp/sample/interior_sample.hpp"
 
 namespace tetwarp::bench {
 

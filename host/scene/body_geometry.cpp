@@ -10,12 +10,12 @@
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/image_lattice.hpp"
 #include "host/scene/isosurface.hpp"
-#include "host/scene/shape.hpp"
-#include "host/scene/shape_lattice.hpp"
-#include "host/scene/shape_surface.hpp"
-#include "host/scene/sheet.hpp"
-#include "host/scene/surface.hpp"
-#include "host/scene/surface_solid.hpp"
+#include "host/scene/shapes/shape.hpp"
+#include "host/scene/shapes/shape_lattice.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
+#include "host/scene/shapes/sheet.hpp"
+#include "host/scene/shapes/surface.hpp"
+#include "host/scene/shapes/surface_solid.hpp"
 
 namespace tetwarp {
 namespace {

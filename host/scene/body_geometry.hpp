@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/scene/scene_geometry.hpp"
-#include "host/scene/surface_pattern.hpp"
+#include "host/scene/shapes/surface_pattern.hpp"
 
 namespace tetwarp {
 

@@ -9,7 +9,7 @@
 
 #include "host/base/index_space.hpp"
 #include "host/scene/checks/scene_checks.hpp"
-#include "host/scene/lattice_search.hpp"
+#include "host/scene/shapes/lattice_search.hpp"
 #include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
 #include "host/scene/voxel_shares.hpp"

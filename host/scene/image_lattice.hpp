@@ -5,7 +5,7 @@
 
 #include <tetwarp/scene.hpp>
 
-#include "host/scene/lattice.hpp"
+#include "host/scene/shapes/lattice.hpp"
 
 namespace tetwarp {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/scene/lattice.hpp"
 #include "host/scene/scene_geometry.hpp"
+#include "host/scene/shapes/lattice.hpp"
 
 namespace tetwarp {
 

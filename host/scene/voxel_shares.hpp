@@ -9,7 +9,7 @@
 #include <tetwarp/volume.hpp>
 
 #include "host/base/point3.hpp"
-#include "kernels/warp/voxel_share.hpp"
+#include "kernels/warp/overlap/voxel_share.hpp"
 
 namespace tetwarp {
 

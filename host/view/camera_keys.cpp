@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "host/base/point3.hpp"
-#include "host/view/input_device.hpp"
+#include "host/view/devices/input_device.hpp"
 
 namespace tetwarp::view {
 namespace {

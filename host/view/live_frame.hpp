@@ -10,7 +10,7 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/view/input_delay.hpp"
-#include "host/view/surface_values.hpp"
+#include "host/view/look/surface_values.hpp"
 
 namespace tetwarp::view {
 

@@ -20,7 +20,7 @@
 #include "host/view/input_log.hpp"
 #include "host/view/live_frame.hpp"
 #include "host/view/live_volumes.hpp"
-#include "host/view/look_surfaces.hpp"
+#include "host/view/look/look_surfaces.hpp"
 #include "host/view/triple_buffer.hpp"
 #include "host/view/view_options.hpp"
 

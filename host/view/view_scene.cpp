@@ -3,7 +3,7 @@
 #include "host/view/view_scene.hpp"
 
 #include "host/base/point3.hpp"
-#include "host/view/scene_look.hpp"
+#include "host/view/look/scene_look.hpp"
 
 namespace tetwarp::view {
 

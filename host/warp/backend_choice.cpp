@@ -5,7 +5,7 @@
 #include "host/base/parallel.hpp"
 #include "host/warp/box_sums.hpp"
 #include "host/warp/device_start.hpp"
-#include "kernels/warp/gaussian_label.hpp"
+#include "kernels/warp/sample/gaussian_label.hpp"
 
 namespace tetwarp {
 namespace {

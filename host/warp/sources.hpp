@@ -14,9 +14,9 @@
 
 #include "host/base/warp_backend.hpp"
 #include "host/warp/geometry.hpp"
-#include "kernels/warp/packed_source.hpp"
-#include "kernels/warp/volume_prefilter.hpp"
-#include "kernels/warp/volume_range.hpp"
+#include "kernels/warp/sample/packed_source.hpp"
+#include "kernels/warp/sample/volume_prefilter.hpp"
+#include "kernels/warp/sample/volume_range.hpp"
 #include "kernels/warp/volume_uniform.hpp"
 
 namespace tetwarp {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/warp/gaussian_label.hpp"
+#include "kernels/warp/sample/gaussian_label.hpp"
 
 namespace tetwarp {
 namespace {

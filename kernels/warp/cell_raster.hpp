@@ -13,12 +13,12 @@
 #include "kernels/warp/cell_planes.hpp"
 #include "kernels/warp/face_sign.hpp"
 #include "kernels/warp/hex_map.hpp"
-#include "kernels/warp/packed_source.hpp"
+#include "kernels/warp/sample/packed_source.hpp"
+#include "kernels/warp/sample/volume_filter.hpp"
+#include "kernels/warp/sample/volume_label.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 #include "kernels/warp/tet_setup.hpp"
 #include "kernels/warp/tet_transform.hpp"
-#include "kernels/warp/volume_filter.hpp"
-#include "kernels/warp/volume_label.hpp"
-#include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp {
 

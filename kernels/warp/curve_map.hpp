@@ -8,9 +8,9 @@
 
 #include "kernels/base/view.hpp"
 #include "kernels/warp/map_inverse.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 #include "kernels/warp/tet_gradient.hpp"
 #include "kernels/warp/tet_setup.hpp"
-#include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp {
 

@@ -10,8 +10,8 @@
 #include "kernels/base/hex_view.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/warp/map_inverse.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 #include "kernels/warp/tet_gradient.hpp"
-#include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp {
 
@@ -63,7 +63,7 @@ TETWARP_HD HexTerms hex_terms(const HexCorners& hex) {
 }
 
 /// The trilinear map x(u) at local coordinates u and its gradient dx/du. Vectors of the CPU repeat
-/// this order of operations (host/warp/cpu/row_hex-inl.hpp).
+/// this order of operations (host/warp/cpu/rows/row_hex-inl.hpp).
 TETWARP_HD void map_hex(const HexTerms& hex, const double* u, double* x, Matrix3& gradient) {
   for (int row = 0; row < 3; ++row) {
     const double* const t = hex.at[row];

@@ -27,7 +27,7 @@ constexpr int max_map_steps = 30;
 
 /// Finds coordinates u with x(u) = `target` by damped Newton iteration from the given u. Steps are
 /// halved until the distance decreases; stops where no step decreases it. Vectors of the CPU repeat
-/// this order of operations (host/warp/cpu/row_hex-inl.hpp).
+/// this order of operations (host/warp/cpu/rows/row_hex-inl.hpp).
 /// @param map       (u, x, gradient): sets x(u) and dx/du
 /// @param clamp     the coordinate that is taken for one
 /// @param gradient  out: dx/du at the u found

@@ -6,7 +6,7 @@
 #include "kernels/base/hd.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/warp/cell_raster.hpp"
-#include "kernels/warp/transform_link.hpp"
+#include "kernels/warp/sample/transform_link.hpp"
 
 namespace tetwarp {
 
@@ -61,7 +61,7 @@ struct ResampleMap {
 };
 
 /// One index = one row of the output; any order. resample() calls it on host threads, in vectors
-/// where it can: host/warp/cpu/row_resample_cpu.hpp.
+/// where it can: host/warp/cpu/rows/row_resample_cpu.hpp.
 ///
 /// Determinism: positions in float64, samples as in cell_raster.hpp; the same bits for any number
 /// of threads. Cost: 12 bytes of field and about 40 operations per voxel beside its sample.

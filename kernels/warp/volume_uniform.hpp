@@ -9,7 +9,7 @@
 #include "kernels/base/atomic_add.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/warp/face_sign.hpp"
-#include "kernels/warp/volume_sample.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 
 namespace tetwarp {
 

@@ -5,9 +5,9 @@
 
 #include "kernels/base/view.hpp"
 #include "kernels/warp/cell_raster.hpp"
-#include "kernels/warp/gaussian_label.hpp"
 #include "kernels/warp/hex_map.hpp"
 #include "kernels/warp/row_resample.hpp"
+#include "kernels/warp/sample/gaussian_label.hpp"
 #include "kernels/warp/surface_tree.hpp"
 #include "kernels/warp/voxel_fields.hpp"
 

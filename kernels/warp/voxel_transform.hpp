@@ -5,9 +5,9 @@
 
 #include "kernels/base/symmetric_eigen.hpp"
 #include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/sample/volume_filter.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 #include "kernels/warp/tet_transform.hpp"
-#include "kernels/warp/volume_filter.hpp"
-#include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp {
 

@@ -9,7 +9,7 @@
 
 #include "bench/contact/cases.hpp"
 #include "bench/contact/solution_check.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::bench {
 namespace {

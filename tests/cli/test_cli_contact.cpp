@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/contact_command.hpp"
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_command.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/support/cli_scene.hpp"
-#include "tests/support/contact_command.hpp"
+#include "tests/support/contact/contact_command.hpp"
 #include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {

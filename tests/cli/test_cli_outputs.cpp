@@ -10,7 +10,7 @@
 #include <tetwarp/scene_io.hpp>
 
 #include "tests/support/cli_scene.hpp"
-#include "tests/support/contact_files.hpp"
+#include "tests/support/contact/contact_files.hpp"
 #include "tests/support/refused_line.hpp"
 
 namespace tetwarp::test {

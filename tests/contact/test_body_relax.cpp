@@ -13,8 +13,8 @@
 
 #include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/body_relax.hpp"
-#include "tests/support/contact_samples.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_samples.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

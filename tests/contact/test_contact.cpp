@@ -11,9 +11,9 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_stages.hpp"
-#include "tests/support/contact_transforms.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_stages.hpp"
+#include "tests/support/contact/contact_transforms.hpp"
 
 namespace tetwarp::test {
 namespace {

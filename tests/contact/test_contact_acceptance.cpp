@@ -10,7 +10,7 @@
 
 #include "host/contact/tracker/geometry.hpp"
 #include "tests/support/block_scenes.hpp"
-#include "tests/support/contact_transforms.hpp"
+#include "tests/support/contact/contact_transforms.hpp"
 #include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {

@@ -9,8 +9,8 @@
 #include <tetwarp/contact_analysis.hpp>
 #include <vector>
 
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {

@@ -10,7 +10,7 @@
 #include "host/contact/newton/associated.hpp"
 #include "host/contact/problem/matrix.hpp"
 #include "host/contact/solve/condense.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <tetwarp/contact.hpp>
 #include <vector>
 
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_rows.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_rows.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {

@@ -10,8 +10,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "tests/support/contact_samples.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_samples.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -16,7 +16,7 @@
 #include "host/contact/newton/newton_system.hpp"
 #include "host/contact/problem/matrix.hpp"
 #include "host/contact/solve/method_choice.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -15,8 +15,8 @@
 #include "host/contact/structure/islands.hpp"
 #include "host/exec/exec_cpu.hpp"
 #include "kernels/contact/contact_components.hpp"
-#include "tests/support/contact_samples.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_samples.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

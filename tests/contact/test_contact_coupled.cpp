@@ -13,8 +13,8 @@
 #include "host/contact/problem/matrix.hpp"
 #include "host/contact/solve/condense.hpp"
 #include "host/contact/structure/system.hpp"
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -13,15 +13,15 @@
 #include "host/base/warp_backend.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/structure/structure.hpp"
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_rows.hpp"
-#include "tests/support/contact_scenes.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_rows.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 #include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {
 namespace {
-constexpr std::int64_t block_contacts = 2048;  ///< of kernels/contact/contact_block.cuh
+constexpr std::int64_t block_contacts = 2048;  ///< of kernels/contact/cuda/contact_block.cuh
 
 ContactOptions on_device(ContactOptions options) {
   options.backend = Backend::cuda;

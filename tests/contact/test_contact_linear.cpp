@@ -14,8 +14,8 @@
 
 #include "host/contact/block_jacobi/coupled_system.hpp"
 #include "host/exec/exec_cpu.hpp"
-#include "tests/support/contact_samples.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_samples.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 #include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {

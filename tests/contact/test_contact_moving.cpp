@@ -9,7 +9,7 @@
 #include <tetwarp/contact_tracker.hpp>
 #include <vector>
 
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -14,7 +14,7 @@
 #include "host/contact/problem/delassus.hpp"
 #include "host/contact/problem/friction_cone.hpp"
 #include "host/contact/problem/measure.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

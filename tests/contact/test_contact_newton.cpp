@@ -7,7 +7,7 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -16,9 +16,9 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact/block_jacobi/block_jacobi.hpp"
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_scenes.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 #include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {

@@ -8,7 +8,7 @@
 #include <tetwarp/contact_problem.hpp>
 
 #include "host/contact/problem/matrix.hpp"
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

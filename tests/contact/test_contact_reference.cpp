@@ -12,7 +12,7 @@
 #include "host/reference/contact/enumerate.hpp"
 #include "host/reference/contact/feasible.hpp"
 #include "host/reference/contact/gauss_seidel.hpp"
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

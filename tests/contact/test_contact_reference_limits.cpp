@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/reference/contact/contact.hpp"
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "host/contact/problem/delassus.hpp"
 #include "host/contact/problem/measure.hpp"
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

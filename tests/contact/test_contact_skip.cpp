@@ -11,8 +11,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "tests/support/contact_samples.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_samples.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

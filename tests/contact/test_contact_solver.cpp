@@ -13,10 +13,10 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_samples.hpp"
-#include "tests/support/contact_scenes.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_samples.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -14,8 +14,8 @@
 #include "host/contact/newton/augmented_lagrangian.hpp"
 #include "host/contact/newton/newton_system.hpp"
 #include "host/contact/solve/method_choice.hpp"
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

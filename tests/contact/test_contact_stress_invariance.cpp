@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/support/block_scenes.hpp"
-#include "tests/support/contact_transforms.hpp"
+#include "tests/support/contact/contact_transforms.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact/contact_methods.hpp"
 #include "tests/support/truth.hpp"
 
 namespace tetwarp::test {

@@ -12,8 +12,8 @@
 #include "host/exec/exec_cpu.hpp"
 #include "host/reference/contact/dense.hpp"
 #include "kernels/contact/contact_sweep.hpp"
-#include "tests/support/contact_samples.hpp"
-#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact/contact_samples.hpp"
+#include "tests/support/contact/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

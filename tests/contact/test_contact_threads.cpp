@@ -9,8 +9,8 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact/structure/structure.hpp"
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "host/base/warp_backend.hpp"
 #include "kernels/exec/exec_stream.cuh"
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 #include "tests/support/device_array.hpp"
 
 namespace tetwarp::test {

@@ -7,7 +7,7 @@
 
 #include "tests/simulate/random_step.hpp"
 
-#include "kernels/contact/residual_check.cuh"
+#include "kernels/contact/cuda/residual_check.cuh"
 
 namespace tetwarp::test {
 

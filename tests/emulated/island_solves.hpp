@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "host/contact/sweeps/run.hpp"
-#include "tests/support/contact_stages.hpp"
-#include "tests/support/contact_sweeps.hpp"
+#include "tests/support/contact/contact_stages.hpp"
+#include "tests/support/contact/contact_sweeps.hpp"
 
-#include "kernels/contact/contact_block.cuh"
-#include "kernels/contact/grid_island.cuh"
+#include "kernels/contact/cuda/contact_block.cuh"
+#include "kernels/contact/cuda/grid_island.cuh"
 
 namespace tetwarp::test {
 

@@ -11,7 +11,7 @@
 
 #include "host/base/pixel_dispatch.hpp"
 #include "host/warp/cpu/cell_raster_cpu.hpp"
-#include "kernels/warp/volume_prefilter.hpp"
+#include "kernels/warp/sample/volume_prefilter.hpp"
 #include "tests/support/stages.hpp"
 
 #include "kernels/warp/cuda/cell_group.cuh"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "kernels/contact/anderson_lanes.cuh"
+#include "kernels/contact/cuda/anderson_lanes.cuh"
 
 namespace tetwarp::test {
 namespace {

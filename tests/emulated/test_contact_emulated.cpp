@@ -9,8 +9,8 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact/sweeps/method_names.hpp"
-#include "tests/support/contact_methods.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_methods.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 #include "tests/support/elastic_block.hpp"
 
 #include "tests/emulated/device_calls.hpp"

@@ -10,11 +10,11 @@
 
 #include "host/contact/sweeps/run.hpp"
 #include "tests/emulated/device_calls.hpp"
-#include "tests/support/contact_scenes.hpp"
-#include "tests/support/contact_stages.hpp"
-#include "tests/support/contact_sweeps.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
+#include "tests/support/contact/contact_stages.hpp"
+#include "tests/support/contact/contact_sweeps.hpp"
 
-#include "kernels/contact/grid_island.cuh"
+#include "kernels/contact/cuda/grid_island.cuh"
 #include "kernels/exec/exec_cuda.cuh"
 #include "kernels/exec/staged_arrays.cuh"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/emulated/island_solves.hpp"
-#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact/contact_methods.hpp"
 
 namespace tetwarp::test {
 namespace {

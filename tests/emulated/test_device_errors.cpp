@@ -12,7 +12,7 @@
 
 #include "kernels/exec/exec_stream.cuh"
 #include "kernels/exec/part_graphs.cuh"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {

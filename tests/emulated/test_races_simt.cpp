@@ -12,7 +12,7 @@
 #include "tests/emulated/island_solves.hpp"
 #include "tests/emulated/race_reports.hpp"
 #include "tests/emulated/simt_kernels.cuh"
-#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact/contact_methods.hpp"
 
 namespace tetwarp::test {
 namespace {

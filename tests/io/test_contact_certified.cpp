@@ -15,7 +15,7 @@
 
 #include "io/fclib/fclib_numbers.hpp"
 #include "io/h5/h5_attribute.hpp"
-#include "tests/support/contact_data.hpp"
+#include "tests/support/contact/contact_data.hpp"
 #include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {

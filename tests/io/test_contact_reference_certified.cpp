@@ -15,9 +15,9 @@
 
 #include "host/contact/problem/matrix.hpp"
 #include "host/reference/contact/contact.hpp"
-#include "tests/support/contact_data.hpp"
-#include "tests/support/contact_files.hpp"
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_data.hpp"
+#include "tests/support/contact/contact_files.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/contact_files.hpp"
+#include "tests/support/contact/contact_files.hpp"
 #include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {

@@ -11,7 +11,7 @@
 #include <tetwarp/mesh_import.hpp>
 #include <tetwarp/scene_io.hpp>
 
-#include "tests/support/contact_files.hpp"
+#include "tests/support/contact/contact_files.hpp"
 #include "tests/support/io_files.hpp"
 #include "tests/support/nifti_files.hpp"
 

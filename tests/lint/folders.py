@@ -1,21 +1,23 @@
 #!/usr/bin/env python3
-"""Checks that includes between folders point one way, from users down to what they use.
+"""Checks that includes between folders point one way, from users down to what they use, and that
+no folder has more source files than a reader can keep in mind.
 
-    folders.py           fails with one line per include that breaks the rules
+    folders.py           fails with one line per include or folder that breaks the rules
     folders.py --dot     prints the include graph of the folders, docs/drawings/folders.dot
     folders.py --test    checks this script on small made-up trees
 """
 import re
 import sys
-from collections import defaultdict
+from collections import Counter, defaultdict
 from pathlib import Path
 
 # Folder -> folders that its files may include from, besides itself. A folder that is not listed may
 # include nothing of the project, so a new folder needs a line here.
 BASE = ["kernels/base", "kernels/base/tetwarp", "host/tetwarp"]
+WARP = ["kernels/warp", "kernels/warp/sample", "kernels/warp/overlap", *BASE]
 CONTACT = ["host/base", "host/exec", "kernels/contact", *BASE]
 COLLIDE = ["host/base", "host/exec", "kernels/collide", *BASE]
-MODEL = ["host/scene", "host/scene/checks", "host/base", "host/exec", "kernels/body", *BASE]
+MODEL = ["host/scene", "host/scene/shapes", "host/scene/checks", "host/base", "host/exec", "kernels/body", *BASE]
 STEP = ["host/simulate/model", *MODEL]
 SURFACES = ["host/simulate/step", "host/simulate/step/cpu", "host/collide", *STEP, *COLLIDE]
 SOLVE = ["host/simulate/surfaces", "kernels/contact", *SURFACES]
@@ -25,26 +27,36 @@ ALLOWED = {
     "kernels/base": ["kernels/base/tetwarp"],
     "kernels/base/tetwarp": [],
     "kernels/exec": ["kernels/base", "kernels/base/tetwarp"],
-    "kernels/warp": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
-    "kernels/warp/cuda": ["kernels/warp", "kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/warp/sample": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/warp": [
+        "kernels/warp/sample", "kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/warp/overlap": [
+        "kernels/warp", "kernels/warp/sample", "kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/warp/cuda": [
+        "kernels/warp", "kernels/warp/sample", "kernels/base", "kernels/base/tetwarp", "kernels/exec"],
     "kernels/body": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
     "kernels/contact": ["kernels/base", "kernels/base/tetwarp", "kernels/body", "kernels/exec"],
+    "kernels/contact/cuda": [
+        "kernels/contact", "kernels/base", "kernels/base/tetwarp", "kernels/body", "kernels/exec"],
     "kernels/collide": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
     "host/tetwarp": ["kernels/base/tetwarp"],
     "host/base": BASE,
     "host/exec": ["host/base", *BASE],
     "host/make": ["host/base", *BASE],
-    "host/warp": ["host/base", "kernels/warp", *BASE],
-    "host/warp/cpu": ["host/warp", "host/base", "host/exec", "kernels/warp", *BASE],
+    "host/warp": ["host/base", *WARP],
+    "host/warp/stages": ["host/warp", "host/base", *WARP],
+    "host/warp/cpu/rows": ["host/warp", "host/warp/stages", "host/base", *WARP],
+    "host/warp/cpu": [
+        "host/warp", "host/warp/stages", "host/warp/cpu/rows", "host/base", "host/exec", *WARP],
     "host/warp/cuda": [
-        "host/warp", "host/base", "kernels/exec", "kernels/warp", "kernels/warp/cuda", *BASE],
+        "host/warp", "host/warp/stages", "host/base", "kernels/exec", "kernels/warp/cuda", *WARP],
     "host/reference/linear": [],
     "host/reference/warp": [
         "host/reference/linear", "host/base", "host/tetwarp", "kernels/base/tetwarp"],
     "host/reference/contact": [
         "host/reference/linear", "host/base", "host/tetwarp", "kernels/base/tetwarp"],
     "host/reference/simulate": [
-        "host/reference/linear", "host/base", "host/scene", "host/scene/checks", "host/tetwarp", "kernels/base/tetwarp"],
+        "host/reference/linear", "host/base", "host/scene", "host/scene/shapes", "host/scene/checks", "host/tetwarp", "kernels/base/tetwarp"],
     "host/contact/problem": CONTACT,
     "host/contact/structure": ["host/contact/problem", *CONTACT],
     "host/contact/newton": ["host/contact/problem", *CONTACT],
@@ -52,6 +64,7 @@ ALLOWED = {
     "host/contact/block_jacobi": [
         "host/contact/problem", "host/contact/structure", "host/contact/sweeps", *CONTACT],
     "host/contact/cuda": [
+        "kernels/contact/cuda",
         "host/contact/problem", "host/contact/block_jacobi", "host/contact/structure",
         "host/contact/sweeps", "kernels/exec", *CONTACT],
     "host/contact/tracker": ["host/contact/problem", *CONTACT],
@@ -67,7 +80,8 @@ ALLOWED = {
     "host/collide/cpu": ["host/collide", *COLLIDE],
     "host/collide/cuda": ["host/collide", "kernels/exec", *COLLIDE],
     "host/scene/checks": ["host/base", *BASE],
-    "host/scene": ["host/scene/checks", "host/base", "host/exec", "kernels/warp", *BASE],
+    "host/scene/shapes": ["host/scene/checks", "host/base", "host/exec", *WARP],
+    "host/scene": ["host/scene/shapes", "host/scene/checks", "host/base", "host/exec", *WARP],
     "host/simulate/model": MODEL,
     "host/simulate/step": ["host/reference/simulate", *STEP],
     "host/simulate/step/cpu": ["host/simulate/step", *STEP],
@@ -81,12 +95,16 @@ ALLOWED = {
         "host/simulate/solve/problem", "host/simulate/solve/two_level",
         "host/simulate/solve/condensed", *SOLVE],
     "host/simulate/step/cuda": [
-        "host/simulate/solve/problem", "host/simulate/solve/two_level", "kernels/exec", *SOLVE],
+        "host/simulate/solve/problem", "host/simulate/solve/two_level", "kernels/contact/cuda",
+        "kernels/exec", *SOLVE],
     "host/simulate/contact_step": [
         "host/simulate/patches", "host/simulate/solve", "host/simulate/solve/problem",
         "host/simulate/solve/two_level", *SOLVE],
+    "host/simulate/state": [
+        "host/simulate/contact_step", "host/simulate/solve", "host/simulate/solve/problem",
+        "host/simulate/solve/two_level", "host/simulate/patches", *SOLVE],
     "host/simulate/run": [
-        "host/simulate/contact_step",
+        "host/simulate/state", "host/simulate/contact_step",
         "host/simulate/start", "host/simulate/patches", "host/simulate/solve",
         "host/simulate/solve/problem", "host/simulate/solve/two_level", *SOLVE],
     "io/tetwarp": ["host/tetwarp", "kernels/base/tetwarp"],
@@ -104,22 +122,28 @@ ALLOWED = {
     "io/scene": ["io/import", "io/files", *IO],
     "io/transforms": ["io/image", "io/nifti", "io/h5", "io/files", *IO],
     "io/picture": ["io/files", *IO],
-    "host/view": ["io/tetwarp", "io/files", "host/base", *BASE],
-    "host/view/screens": ["host/view", "io/scene", "io/tetwarp", "host/base", *BASE],
+    "host/view/devices": ["host/base", *BASE],
+    "host/view/look": ["io/tetwarp", "io/files", "host/base", *BASE],
+    "host/view": ["host/view/devices", "host/view/look", "io/tetwarp", "io/files", "host/base", *BASE],
+    "host/view/screens": ["host/view", "host/view/look", "io/scene", "io/tetwarp", "host/base", *BASE],
     "host/view/link": ["host/view/screens", "host/base", *BASE],
     "host/view/window": [
-        "host/view", "host/view/link", "host/view/screens", "io/tetwarp", "io/files", "host/base", *BASE],
+        "host/view", "host/view/devices", "host/view/look", "host/view/link", "host/view/screens", "io/tetwarp", "io/files", "host/base", *BASE],
     "host/cli/certify": ["host/cli/common", "host/cli/job", *CLI],
     "host/cli/common": CLI,
     "host/cli/contact": ["host/cli/common", *CLI],
     "host/cli/job": ["host/cli/common", "io/volume", *CLI],
-    "host/cli/warp": ["host/cli/common", "host/cli/job", "io/scene", *CLI],
-    "host/cli/simulate": ["host/cli/common", "host/cli/job", "host/view", "io/vtkhdf", *CLI],
+    "host/cli/warp/volumes": ["host/cli/common", "host/cli/job", *CLI],
+    "host/cli/warp": [
+        "host/cli/warp/volumes", "host/cli/common", "host/cli/job", "io/scene", *CLI],
+    "host/cli/simulate": ["host/cli/common", "host/cli/job", "host/view/look", "io/vtkhdf", *CLI],
     "host/cli/view": ["host/cli/common", "host/view", *CLI],
-    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", "host/view", "io/fclib",
+    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", "host/view/look", "io/fclib",
                        "io/vtkhdf", *CLI],
     "host/cli": ["host/cli/common", *CLI],
 }
+MOST_FILES = {"kernels": 40, "host": 40, "io": 40, "bench": 40, "tests": 60}  # of one folder
+SOURCES = (".hpp", ".cpp", ".cu", ".cuh")
 INCLUDE_ROOTS = ["host", "io", "kernels/base"]  # of headers named <tetwarp/...>
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')
 
@@ -129,7 +153,7 @@ def includes(root):
     files = {}
     for top in ("kernels", "host", "io"):
         for path in sorted((root / top).rglob("*")):
-            if path.suffix in (".hpp", ".cpp", ".cu", ".cuh"):
+            if path.suffix in SOURCES:
                 files[path.relative_to(root).as_posix()] = path
     for name, path in files.items():
         for line in path.read_text(encoding="utf-8").splitlines():
@@ -151,6 +175,14 @@ def violations(root, allowed=ALLOWED):
         here, there = folder_of(name), folder_of(included)
         if here != there and there not in allowed.get(here, []):
             yield f"{name} includes {included}: {here} must not depend on {there}"
+
+
+def crowded(root, most=MOST_FILES):
+    for top, limit in most.items():
+        counts = Counter(path.parent for path in (root / top).rglob("*") if path.suffix in SOURCES)
+        for folder, count in sorted(counts.items()):
+            if count > limit:
+                yield f"{folder.relative_to(root).as_posix()} has {count} source files, more than {limit}"
 
 
 def cycle_in(edges):
@@ -246,6 +278,9 @@ def test():
         assert list(violations(root)) == [
             "kernels/base/bad.hpp includes host/tetwarp/warp.hpp: "
             "kernels/base must not depend on host/tetwarp"]
+        assert not list(crowded(root, {"kernels": 2}))
+        assert list(crowded(root, {"kernels": 1, "host": 1})) == [
+            "kernels/base has 2 source files, more than 1"]
 
 
 def main():
@@ -254,7 +289,7 @@ def main():
         test()
     if "--dot" in sys.argv:
         return print_dot(graph(root))
-    found = list(violations(root))
+    found = [*violations(root), *crowded(root)]
     if not found and cycle_in(graph(root)):
         found = [f"cycle of folders: {' -> '.join(cycle_in(graph(root)))}"]
     print("\n".join(found) or "includes between folders point one way")

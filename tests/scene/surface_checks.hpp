@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "host/scene/lattice.hpp"
+#include "host/scene/shapes/lattice.hpp"
 
 namespace tetwarp::scene_checks {
 

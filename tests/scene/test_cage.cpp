@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "host/scene/cage.hpp"
+#include "host/scene/shapes/cage.hpp"
 #include "tests/scene/surface_checks.hpp"
 
 namespace tetwarp {

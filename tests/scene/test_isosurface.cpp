@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/scene/isosurface.hpp"
-#include "host/scene/surface.hpp"
+#include "host/scene/shapes/surface.hpp"
 #include "tests/scene/image_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
 #include "tests/support/message_of.hpp"

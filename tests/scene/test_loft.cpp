@@ -11,7 +11,7 @@
 #include <tetwarp/surface.hpp>
 #include <vector>
 
-#include "host/scene/surface.hpp"
+#include "host/scene/shapes/surface.hpp"
 #include "tests/scene/surface_checks.hpp"
 #include "tests/support/message_of.hpp"
 

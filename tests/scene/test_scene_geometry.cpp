@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/scene/scene_geometry.hpp"
-#include "host/scene/shape_surface.hpp"
-#include "host/scene/surface.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
+#include "host/scene/shapes/surface.hpp"
 #include "tests/scene/image_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
 #include "tests/support/message_of.hpp"

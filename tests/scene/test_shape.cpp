@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/shape.hpp"
-#include "host/scene/shape_fraction.hpp"
+#include "host/scene/shapes/shape.hpp"
+#include "host/scene/shapes/shape_fraction.hpp"
 #include "tests/scene/shape_samples.hpp"
 
 namespace tetwarp {

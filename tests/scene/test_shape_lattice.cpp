@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/shape.hpp"
-#include "host/scene/shape_fraction.hpp"
-#include "host/scene/shape_lattice.hpp"
-#include "host/scene/surface.hpp"
+#include "host/scene/shapes/shape.hpp"
+#include "host/scene/shapes/shape_fraction.hpp"
+#include "host/scene/shapes/shape_lattice.hpp"
+#include "host/scene/shapes/surface.hpp"
 #include "tests/scene/shape_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
 #include "tests/support/message_of.hpp"

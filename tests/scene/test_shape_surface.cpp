@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/shape.hpp"
-#include "host/scene/shape_surface.hpp"
-#include "host/scene/surface.hpp"
+#include "host/scene/shapes/shape.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
+#include "host/scene/shapes/surface.hpp"
 #include "tests/scene/shape_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
 

@@ -10,9 +10,9 @@
 #include <tetwarp/tetwarp.hpp>
 #include <vector>
 
-#include "host/scene/shape.hpp"
-#include "host/scene/shape_surface.hpp"
-#include "host/scene/surface_lattice.hpp"
+#include "host/scene/shapes/shape.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
+#include "host/scene/shapes/surface_lattice.hpp"
 #include "tests/scene/image_samples.hpp"
 #include "tests/scene/shape_samples.hpp"
 #include "tests/scene/surface_checks.hpp"

@@ -11,10 +11,10 @@
 #include <tetwarp/tetwarp.hpp>
 #include <vector>
 
-#include "host/scene/shape_surface.hpp"
-#include "host/scene/surface.hpp"
-#include "host/scene/surface_lattice.hpp"
-#include "host/scene/surface_solid.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
+#include "host/scene/shapes/surface.hpp"
+#include "host/scene/shapes/surface_lattice.hpp"
+#include "host/scene/shapes/surface_solid.hpp"
 #include "tests/scene/shape_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
 

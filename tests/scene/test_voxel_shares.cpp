@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "host/scene/lattice.hpp"
+#include "host/scene/shapes/lattice.hpp"
 
 namespace tetwarp {
 namespace {

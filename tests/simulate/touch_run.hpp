@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/simulate/run/checkpoint_bytes.hpp"
+#include "host/simulate/state/checkpoint_bytes.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 
 namespace tetwarp::test {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::scenes {
 

@@ -8,7 +8,7 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact/contact_samples.hpp"
 
 namespace tetwarp::samples {
 

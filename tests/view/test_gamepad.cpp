@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "host/view/gamepad.hpp"
+#include "host/view/devices/gamepad.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "host/scene/shape_surface.hpp"
-#include "host/view/scene_look.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
+#include "host/view/look/scene_look.hpp"
+#include "host/view/look/surface_values.hpp"
 #include "host/view/screens/scene_sharer.hpp"
-#include "host/view/surface_values.hpp"
 #include "tests/view/live_scene.hpp"
 
 namespace tetwarp::test {

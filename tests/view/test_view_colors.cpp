@@ -9,8 +9,8 @@
 
 #include "host/base/point3.hpp"
 #include "host/view/curve_editor.hpp"
-#include "host/view/look_surfaces.hpp"
-#include "host/view/value_colors.hpp"
+#include "host/view/look/look_surfaces.hpp"
+#include "host/view/look/value_colors.hpp"
 #include "tests/view/live_scene.hpp"
 
 namespace tetwarp::test {

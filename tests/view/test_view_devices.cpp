@@ -9,7 +9,7 @@
 #include <tetwarp/error.hpp>
 
 #include "host/base/point3.hpp"
-#include "host/view/simulated_device.hpp"
+#include "host/view/devices/simulated_device.hpp"
 #include "tests/support/run_command.hpp"
 
 namespace tetwarp::test {

@@ -12,8 +12,8 @@
 
 #include "host/base/point3.hpp"
 #include "host/view/camera_keys.hpp"
+#include "host/view/look/slice_look.hpp"
 #include "host/view/overlay_text.hpp"
-#include "host/view/slice_look.hpp"
 
 namespace tetwarp::test {
 namespace {

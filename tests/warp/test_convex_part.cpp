@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernels/warp/convex_part.hpp"
+#include "kernels/warp/overlap/convex_part.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {

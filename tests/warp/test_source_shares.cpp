@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-#include "kernels/warp/voxel_part.hpp"
+#include "kernels/warp/overlap/voxel_part.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {

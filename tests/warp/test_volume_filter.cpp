@@ -13,7 +13,7 @@
 #include "host/reference/warp/sample.hpp"
 #include "host/warp/cpu/cell_cull_cpu.hpp"
 #include "kernels/warp/cell_raster.hpp"
-#include "kernels/warp/volume_prefilter.hpp"
+#include "kernels/warp/sample/volume_prefilter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {

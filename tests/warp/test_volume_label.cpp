@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "kernels/warp/volume_label.hpp"
+#include "kernels/warp/sample/volume_label.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {

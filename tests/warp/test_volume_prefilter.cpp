@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/reference/warp/sample.hpp"
-#include "kernels/warp/volume_prefilter.hpp"
+#include "kernels/warp/sample/volume_prefilter.hpp"
 #include "tests/support/each_exec.hpp"
 #include "tests/support/scenes.hpp"
 

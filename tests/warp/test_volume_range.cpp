@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "kernels/warp/volume_range.hpp"
+#include "kernels/warp/sample/volume_range.hpp"
 #include "tests/support/each_exec.hpp"
 
 namespace tetwarp::test {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "kernels/warp/volume_sample.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {

@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-#include "kernels/warp/voxel_bodies.hpp"
+#include "kernels/warp/overlap/voxel_bodies.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {

@@ -9,7 +9,7 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/cli/simulate/simulate_contacts.hpp"
-#include "host/view/look_surfaces.hpp"
+#include "host/view/look/look_surfaces.hpp"
 #include "io/vtkhdf/simulation_mesh.hpp"
 
 namespace tetwarp::cli {

@@ -9,7 +9,7 @@
 #include <tetwarp/io.hpp>
 
 #include "host/base/stopwatch.hpp"
-#include "host/view/scene_look.hpp"
+#include "host/view/look/scene_look.hpp"
 
 namespace tetwarp::cli {
 

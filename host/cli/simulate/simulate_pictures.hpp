@@ -14,7 +14,7 @@
 
 #include "host/cli/simulate/simulate_arguments.hpp"
 #include "host/cli/simulate/simulate_warp.hpp"
-#include "host/view/look_surfaces.hpp"
+#include "host/view/look/look_surfaces.hpp"
 
 namespace tetwarp::cli {
 

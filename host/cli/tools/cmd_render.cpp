@@ -20,7 +20,7 @@
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/picture_options.hpp"
 #include "host/cli/tools/read_array.hpp"
-#include "host/view/scene_look.hpp"
+#include "host/view/look/scene_look.hpp"
 #include "io/files/extension.hpp"
 
 namespace tetwarp::cli {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "host/cli/job/memory_plan.hpp"
-#include "host/cli/warp/report_exchange.hpp"
-#include "host/cli/warp/volume_run.hpp"
+#include "host/cli/warp/volumes/report_exchange.hpp"
+#include "host/cli/warp/volumes/volume_run.hpp"
 
 namespace tetwarp::cli {
 namespace {

@@ -17,7 +17,7 @@
 #include "host/cli/job/memory_plan.hpp"
 #include "host/cli/job/output_grid.hpp"
 #include "host/cli/job/source_scan.hpp"
-#include "host/cli/warp/samples.hpp"
+#include "host/cli/warp/volumes/samples.hpp"
 #include "io/files/memory.hpp"
 
 namespace tetwarp::cli {

@@ -10,7 +10,7 @@
 #include "host/base/vector_view.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/sweeps/run.hpp"
-#include "kernels/contact/contact_block.cuh"
+#include "kernels/contact/cuda/contact_block.cuh"
 #include "kernels/exec/device_limits.cuh"
 #include "kernels/exec/exec_cuda.cuh"
 

@@ -16,7 +16,7 @@
 #include "host/contact/structure/indices.hpp"
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_components.hpp"
-#include "kernels/contact/device_sweep.cuh"
+#include "kernels/contact/cuda/device_sweep.cuh"
 #include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {

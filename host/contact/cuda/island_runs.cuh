@@ -15,8 +15,8 @@
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_system.hpp"
-#include "kernels/contact/device_sweep.cuh"
-#include "kernels/contact/grid_island.cuh"
+#include "kernels/contact/cuda/device_sweep.cuh"
+#include "kernels/contact/cuda/grid_island.cuh"
 #include "kernels/exec/device_limits.cuh"
 #include "kernels/exec/exec_cuda.cuh"
 

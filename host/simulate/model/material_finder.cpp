@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "host/base/index_of.hpp"
-#include "host/scene/surface_lattice.hpp"
+#include "host/scene/shapes/surface_lattice.hpp"
 #include "host/simulate/model/nearest.hpp"
 #include "host/simulate/model/rotations.hpp"
 

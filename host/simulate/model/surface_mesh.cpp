@@ -9,8 +9,8 @@
 #include "host/scene/checks/check_geometry.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/isosurface.hpp"
-#include "host/scene/surface.hpp"
-#include "host/scene/surface_lattice.hpp"
+#include "host/scene/shapes/surface.hpp"
+#include "host/scene/shapes/surface_lattice.hpp"
 #include "host/simulate/model/nearest.hpp"
 
 namespace tetwarp {

@@ -7,8 +7,8 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/simulate/run/moving_bodies.hpp"
-#include "host/simulate/run/simulated_scene.hpp"
-#include "host/simulate/run/step_count.hpp"
+#include "host/simulate/state/simulated_scene.hpp"
+#include "host/simulate/state/step_count.hpp"
 
 namespace tetwarp {
 

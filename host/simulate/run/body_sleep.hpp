@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "host/simulate/contact_step/contact_step.hpp"
-#include "host/simulate/run/host_state.hpp"
-#include "host/simulate/run/island_sleep.hpp"
-#include "host/simulate/run/simulated_scene.hpp"
+#include "host/simulate/state/host_state.hpp"
+#include "host/simulate/state/island_sleep.hpp"
+#include "host/simulate/state/simulated_scene.hpp"
 #include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp {

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "host/base/stopwatch.hpp"
-#include "host/simulate/run/last_step.hpp"
 #include "host/simulate/run/moving_bodies.hpp"
-#include "host/simulate/run/simulated_scene.hpp"
-#include "host/simulate/run/step_attempt.hpp"
-#include "host/simulate/run/step_count.hpp"
-#include "host/simulate/run/step_division.hpp"
+#include "host/simulate/state/last_step.hpp"
+#include "host/simulate/state/simulated_scene.hpp"
+#include "host/simulate/state/step_attempt.hpp"
+#include "host/simulate/state/step_count.hpp"
+#include "host/simulate/state/step_division.hpp"
 
 namespace tetwarp {
 

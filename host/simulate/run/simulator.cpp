@@ -8,15 +8,15 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/simulate/run/added_handles.hpp"
 #include "host/simulate/run/body_places.hpp"
-#include "host/simulate/run/checkpoint.hpp"
 #include "host/simulate/run/divided_step.hpp"
-#include "host/simulate/run/fingerprint.hpp"
 #include "host/simulate/run/moving_bodies.hpp"
-#include "host/simulate/run/simulated_scene.hpp"
-#include "host/simulate/run/step_count.hpp"
 #include "host/simulate/run/step_records.hpp"
+#include "host/simulate/state/added_handles.hpp"
+#include "host/simulate/state/checkpoint.hpp"
+#include "host/simulate/state/fingerprint.hpp"
+#include "host/simulate/state/simulated_scene.hpp"
+#include "host/simulate/state/step_count.hpp"
 
 namespace tetwarp {
 

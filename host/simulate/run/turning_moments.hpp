@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "host/simulate/run/simulated_scene.hpp"
+#include "host/simulate/state/simulated_scene.hpp"
 
 namespace tetwarp {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/scene/cage.hpp"
+#include "host/scene/shapes/cage.hpp"
 #include "host/simulate/start/start_shrink.hpp"
 
 namespace tetwarp {

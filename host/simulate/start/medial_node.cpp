@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "host/base/point3.hpp"
-#include "host/scene/surface_lattice.hpp"
+#include "host/scene/shapes/surface_lattice.hpp"
 #include "host/simulate/model/nearest.hpp"
 
 namespace tetwarp {

@@ -13,7 +13,7 @@
 #include "host/base/disjoint_sets.hpp"
 #include "host/base/parallel.hpp"
 #include "host/scene/checks/scene_checks.hpp"
-#include "host/scene/surface_lattice.hpp"
+#include "host/scene/shapes/surface_lattice.hpp"
 #include "host/simulate/start/inset_places.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"

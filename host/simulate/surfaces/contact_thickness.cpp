@@ -9,7 +9,7 @@
 
 #include "host/base/point3.hpp"
 #include "host/scene/checks/scene_checks.hpp"
-#include "host/scene/shape_surface.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
 

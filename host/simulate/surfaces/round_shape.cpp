@@ -7,8 +7,8 @@
 
 #include "host/base/point3.hpp"
 #include "host/scene/pose.hpp"
-#include "host/scene/shape.hpp"
-#include "host/scene/shape_surface.hpp"
+#include "host/scene/shapes/shape.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
 #include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {

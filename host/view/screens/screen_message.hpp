@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "host/view/look/slice_look.hpp"
 #include "host/view/pick.hpp"
 #include "host/view/screens/message_bytes.hpp"
 #include "host/view/screens/room.hpp"
-#include "host/view/slice_look.hpp"
 #include "host/view/volume_colors.hpp"
 
 namespace tetwarp::view {

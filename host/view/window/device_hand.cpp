@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "host/base/point3.hpp"
-#include "host/view/gamepad.hpp"
-#include "host/view/simulated_device.hpp"
-#include "host/view/space_mouse.hpp"
+#include "host/view/devices/gamepad.hpp"
+#include "host/view/devices/simulated_device.hpp"
+#include "host/view/devices/space_mouse.hpp"
 #include "host/view/window/window_camera.hpp"
 
 namespace tetwarp::view {

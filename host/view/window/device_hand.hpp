@@ -8,7 +8,7 @@
 
 #include <vtkCamera.h>
 
-#include "host/view/input_device.hpp"
+#include "host/view/devices/input_device.hpp"
 
 namespace tetwarp::view {
 

@@ -16,7 +16,7 @@
 #include <cstdint>
 
 #include "host/base/point3.hpp"
-#include "host/view/obstacle_surface.hpp"
+#include "host/view/look/obstacle_surface.hpp"
 
 namespace tetwarp::view {
 namespace {

@@ -14,7 +14,7 @@
 #include <vtkRenderer.h>
 
 #include "host/view/live_frame.hpp"
-#include "host/view/value_colors.hpp"
+#include "host/view/look/value_colors.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/window/surface_actor.hpp"
 

@@ -11,8 +11,8 @@
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 
+#include "host/view/look/scene_look.hpp"
 #include "host/view/pick.hpp"
-#include "host/view/scene_look.hpp"
 
 namespace tetwarp::view {
 

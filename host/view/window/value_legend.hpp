@@ -6,7 +6,7 @@
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
 
-#include "host/view/value_colors.hpp"
+#include "host/view/look/value_colors.hpp"
 
 namespace tetwarp::view {
 

@@ -18,8 +18,8 @@
 #include <vtkVolume.h>
 
 #include "host/view/live_frame.hpp"
+#include "host/view/look/slice_look.hpp"
 #include "host/view/ray_quality.hpp"
-#include "host/view/slice_look.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/volume_colors.hpp"
 

@@ -8,7 +8,7 @@
 #include "host/warp/cpu/cell_cull_cpu.hpp"
 #include "host/warp/cpu/cell_raster_cpu.hpp"
 #include "host/warp/cpu/overlap_stage_cpu.hpp"
-#include "host/warp/warp_pipeline.hpp"
+#include "host/warp/stages/warp_pipeline.hpp"
 
 namespace tetwarp {
 

@@ -17,8 +17,8 @@
 #include <cstdint>
 
 #include "host/warp/cpu/line_owners-inl.hpp"
-#include "host/warp/cpu/row_sample-inl.hpp"
-#include "host/warp/cpu/row_stream-inl.hpp"
+#include "host/warp/cpu/rows/row_sample-inl.hpp"
+#include "host/warp/cpu/rows/row_stream-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();

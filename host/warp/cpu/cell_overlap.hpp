@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/warp/cpu/facet_parts.hpp"
-#include "kernels/warp/voxel_overlap.hpp"
+#include "kernels/warp/overlap/voxel_overlap.hpp"
 
 namespace tetwarp {
 

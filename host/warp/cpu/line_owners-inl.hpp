@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "host/warp/cpu/cell_owners-inl.hpp"
-#include "host/warp/cpu/row_hex-inl.hpp"
-#include "host/warp/cpu/row_source-inl.hpp"
+#include "host/warp/cpu/rows/row_hex-inl.hpp"
+#include "host/warp/cpu/rows/row_source-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernels/warp/volume_sample.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 
 namespace tetwarp {
 namespace {

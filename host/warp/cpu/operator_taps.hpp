@@ -6,7 +6,7 @@
 
 #include <tetwarp/choices.hpp>
 
-#include "kernels/warp/volume_filter.hpp"
+#include "kernels/warp/sample/volume_filter.hpp"
 
 namespace tetwarp {
 

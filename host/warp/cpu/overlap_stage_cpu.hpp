@@ -6,7 +6,7 @@
 
 #include "host/exec/exec_cpu.hpp"
 #include "host/warp/cpu/cell_overlap.hpp"
-#include "host/warp/overlap_stage.hpp"
+#include "host/warp/stages/overlap_stage.hpp"
 
 namespace tetwarp {
 

@@ -8,8 +8,8 @@
 
 #include "host/base/parallel.hpp"
 #include "host/warp/cpu/overlap_stage_cpu.hpp"
-#include "host/warp/pairs_host.hpp"
-#include "host/warp/transforms.hpp"
+#include "host/warp/stages/pairs_host.hpp"
+#include "host/warp/stages/transforms.hpp"
 
 namespace tetwarp {
 

@@ -11,7 +11,7 @@
 
 #include "host/base/region_grid.hpp"
 #include "host/warp/cpu/transform_links.hpp"
-#include "kernels/warp/volume_sample.hpp"
+#include "kernels/warp/sample/volume_sample.hpp"
 
 namespace tetwarp {
 namespace {

@@ -16,10 +16,10 @@
 #include "host/base/warp_backend.hpp"
 #include "host/exec/exec_cpu.hpp"
 #include "host/warp/box_sums.hpp"
-#include "host/warp/cpu/row_resample_cpu.hpp"
+#include "host/warp/cpu/rows/row_resample_cpu.hpp"
 #include "host/warp/cpu/transform_links.hpp"
-#include "host/warp/label_stages.hpp"
 #include "host/warp/sources.hpp"
+#include "host/warp/stages/label_stages.hpp"
 #include "host/warp/transform_checks.hpp"
 #include "kernels/warp/row_resample.hpp"
 

@@ -7,7 +7,7 @@
 #include <tetwarp/resample.hpp>
 
 #include "host/warp/resample_part.hpp"
-#include "kernels/warp/transform_link.hpp"
+#include "kernels/warp/sample/transform_link.hpp"
 
 namespace tetwarp {
 

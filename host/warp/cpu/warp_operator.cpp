@@ -17,7 +17,7 @@
 #include "host/warp/cpu/operator_taps.hpp"
 #include "host/warp/cpu/overlap_weights.hpp"
 #include "host/warp/cpu/voxel_places.hpp"
-#include "kernels/warp/volume_prefilter.hpp"
+#include "kernels/warp/sample/volume_prefilter.hpp"
 
 namespace tetwarp {
 namespace {

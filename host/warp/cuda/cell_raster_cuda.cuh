@@ -3,7 +3,7 @@
 /// which a second one computes; any other job has the second one alone.
 /// @see cell_group.cuh, cell_raster.cuh
 #pragma once
-#include "host/warp/warp_pipeline.hpp"
+#include "host/warp/stages/warp_pipeline.hpp"
 #include "kernels/exec/exec_cuda.cuh"
 #include "kernels/warp/cuda/cell_group.cuh"
 #include "kernels/warp/cuda/cell_raster.cuh"

@@ -7,7 +7,7 @@
 #include "kernels/warp/cell_class.hpp"
 #include "kernels/warp/cuda/cell_raster.cuh"
 #include "kernels/warp/cuda/cell_search.cuh"
-#include "kernels/warp/interior_sample.hpp"
+#include "kernels/warp/sample/interior_sample.hpp"
 
 namespace tetwarp {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "host/scene/shape_surface.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "tests/simulate/law_scenes.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "host/scene/shape_surface.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
 #include "tests/simulate/law_scenes.hpp"
 
 namespace tetwarp::test {

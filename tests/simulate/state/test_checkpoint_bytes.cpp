@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "host/simulate/run/checkpoint_bytes.hpp"
+#include "host/simulate/state/checkpoint_bytes.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {

@@ -10,8 +10,8 @@
 
 #include <tetwarp/surface.hpp>
 
-#include "host/scene/shape.hpp"
-#include "host/scene/shape_surface.hpp"
+#include "host/scene/shapes/shape.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
 #include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"

@@ -1,7 +1,7 @@
 /// Bodies that fall, rest and collide.
 #include <tetwarp/surface.hpp>
 
-#include "host/scene/shape_surface.hpp"
+#include "host/scene/shapes/shape_surface.hpp"
 #include "tests/simulate/touch_run.hpp"
 #include "tests/support/torn_mesh.hpp"
 

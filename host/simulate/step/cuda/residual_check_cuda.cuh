@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "host/simulate/step/cuda/two_level_numbers.cuh"
-#include "kernels/contact/residual_check.cuh"
+#include "kernels/contact/cuda/residual_check.cuh"
 #include "kernels/exec/device_limits.cuh"
 
 namespace tetwarp {

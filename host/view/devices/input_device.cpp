@@ -1,0 +1,55 @@
+/// @file input_device.cpp
+/// Moves and turns in the axes of a camera.
+#include "host/view/devices/input_device.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp::view {
+namespace {
+constexpr double most_way = 0.5;                    // distances of eye and target a second
+constexpr double most_turn = std::numbers::pi / 2;  // [1/s]
+
+/// Right, up and back.
+std::array<Point3, 3> axes_of(const Camera& camera) {
+  const Point3 back = unit(minus(camera.eye, camera.target));
+  const Point3 right = unit(cross(camera.up, back));
+  return {right, cross(back, right), back};
+}
+
+Point3 along(const std::array<Point3, 3>& axes, const Point3& x) {
+  return plus(plus(times(x[0], axes[0]), times(x[1], axes[1])), times(x[2], axes[2]));
+}
+
+/// Rodrigues' formula.
+Point3 turned(const Point3& x, const Point3& axis, double angle) {
+  const Point3 part = times(dot(axis, x) * (1 - std::cos(angle)), axis);
+  return plus(plus(times(std::cos(angle), x), times(std::sin(angle), cross(axis, x))), part);
+}
+}  // namespace
+
+Point3 carried_way(const Camera& camera, const DeviceSpan& by) {
+  const double distance = norm(minus(camera.eye, camera.target));
+  return times(most_way * distance * by.seconds, along(axes_of(camera), by.state.move));
+}
+
+Camera moved_camera(const Camera& camera, const DeviceSpan& by) {
+  Camera moved = camera;
+  const Point3 way = carried_way(camera, by), turn = along(axes_of(camera), by.state.turn);
+  moved.target = plus(camera.target, way);
+  Point3 arm = minus(camera.eye, camera.target);
+  const double size = norm(turn);
+  if (size > 0) {
+    // The camera turns against the scene, which turns as the hand does.
+    const Point3 axis = times(1 / size, turn);
+    const double angle = -most_turn * size * by.seconds;
+    arm = turned(arm, axis, angle);
+    moved.up = turned(camera.up, axis, angle);
+  }
+  moved.eye = plus(moved.target, arm);
+  return moved;
+}
+
+}  // namespace tetwarp::view

@@ -1,0 +1,14 @@
+/// @file space_mouse.hpp
+/// 3D mice, by the daemon spacenavd.
+#pragma once
+#include <memory>
+
+#include "host/view/devices/input_device.hpp"
+
+namespace tetwarp::view {
+
+/// Pushing and turning the cap moves and turns; the first button grabs.
+/// @throws std::runtime_error  no daemon answers, or this program was built without libspnav
+std::unique_ptr<InputDevice> open_space_mouse();
+
+}  // namespace tetwarp::view
