@@ -1,7 +1,7 @@
 # Tests of files, of the command and of the benchmarks; needs tetwarp::io.
 # ---- files, private code included -------------------------------------------------------------
 if(NOT BUILD_SHARED_LIBS)
-  tetwarp_add_tests(tetwarp_io_tests UNITY 3 LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
+  tetwarp_add_tests(tetwarp_io_tests UNITY 8 LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
     SOURCES
     tests/io/test_io_arrays.cpp
     tests/io/test_io_axes.cpp
@@ -108,7 +108,7 @@ include(cmake/DocTests.cmake)
 # ---- the command ------------------------------------------------------------------------------
 # tetwarp_add_cli_tests(PROGRAM SOURCE...): tests that start the command.
 function(tetwarp_add_cli_tests program)
-  tetwarp_add_tests(${program} UNITY 3
+  tetwarp_add_tests(${program} UNITY 8
     LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti nlohmann_json::nlohmann_json SOURCES ${ARGN})
   target_compile_definitions(${program} PRIVATE
     TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>"

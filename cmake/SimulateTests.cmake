@@ -164,7 +164,7 @@ if(NOT BUILD_SHARED_LIBS)
   foreach(name scene model body emulated_simulator reference_twin ccd detector surfaces
                pair_contact contact_system touch contact_law)
     if(tetwarp_${name}_tests)
-      tetwarp_add_tests(tetwarp_${name}_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json
+      tetwarp_add_tests(tetwarp_${name}_tests UNITY 8 LIBRARIES nlohmann_json::nlohmann_json
         SOURCES ${tetwarp_${name}_tests})
       tetwarp_discover(tetwarp_${name}_tests unit)
     endif()
@@ -204,7 +204,7 @@ if(NOT BUILD_SHARED_LIBS)
     tetwarp_discover(tetwarp_simulate_large_tests long)
   endif()
   if(TETWARP_IO)
-    tetwarp_add_tests(tetwarp_scene_file_tests UNITY 4
+    tetwarp_add_tests(tetwarp_scene_file_tests UNITY 8
       LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json SOURCES
       tests/scene/test_scene_bad.cpp
       tests/scene/test_scene_check.cpp

@@ -122,7 +122,7 @@ if(NOT BUILD_SHARED_LIBS)
   endif()
   set_source_files_properties(${tetwarp_stage_units} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
-  tetwarp_add_tests(tetwarp_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
+  tetwarp_add_tests(tetwarp_tests UNITY 8 LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_units}
     tests/base/test_parallel.cpp
     tests/base/test_repeated_cells.cpp
@@ -163,7 +163,7 @@ if(NOT BUILD_SHARED_LIBS)
   endif()
   tetwarp_discover(tetwarp_tests unit)
 
-  tetwarp_add_tests(tetwarp_reference_tests SOURCES
+  tetwarp_add_tests(tetwarp_reference_tests UNITY 8 SOURCES
     tests/warp/test_conservative_operator.cpp
     tests/warp/test_coverage.cpp
     tests/warp/test_warp_operator.cpp
@@ -187,9 +187,9 @@ if(NOT BUILD_SHARED_LIBS)
     tetwarp_discover(tetwarp_contact_stress_tests long)
   endif()
 
-  # Three files per unit; those that include kernels are last, so that a change of a kernel
+  # Those that include kernels are last, so that a change of a kernel
   # recompiles few units.
-  tetwarp_add_tests(tetwarp_contact_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
+  tetwarp_add_tests(tetwarp_contact_tests UNITY 8 LIBRARIES nlohmann_json::nlohmann_json SOURCES
     tests/contact/test_contact_acceptance.cpp
     tests/contact/test_contact_associated.cpp tests/contact/test_contact_pivoting.cpp
     tests/contact/test_contact_bad_options.cpp tests/contact/test_contact_budget.cpp
@@ -226,7 +226,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_contact_tests unit)
 
   # A separate program, because the emulation defines CUDA's names.
-  tetwarp_add_tests(tetwarp_simt_tests SOURCES
+  tetwarp_add_tests(tetwarp_simt_tests UNITY 5 SOURCES
     tests/emulated/test_affine_simt.cpp tests/emulated/test_anderson_simt.cpp
     tests/emulated/test_cell_group_simt.cpp tests/emulated/test_cell_raster_simt.cpp
     tests/emulated/test_contact_grid_simt.cpp tests/emulated/test_contact_simt.cpp
@@ -292,7 +292,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_quantities.cpp
     tests/warp/test_warp_rounding.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
-  set_target_properties(tetwarp_backend_tests PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 5)
+  set_target_properties(tetwarp_backend_tests PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   if(TETWARP_FUSED_EMULATION)
     set_source_files_properties(tests/emulated/emulated_backend.cpp tests/emulated/emulated_contact.cpp
       PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
@@ -304,7 +304,7 @@ if(NOT BUILD_SHARED_LIBS)
   # Also in a module of Python: position independent, unlike the precompiled headers.
   set_target_properties(tetwarp_emulated_backend tetwarp_emulated_primitives tetwarp_emulated_start
     PROPERTIES POSITION_INDEPENDENT_CODE ON DISABLE_PRECOMPILE_HEADERS ON)
-  tetwarp_add_tests(tetwarp_emulated_tests SOURCES
+  tetwarp_add_tests(tetwarp_emulated_tests UNITY 7 SOURCES
     $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_contact>
     $<TARGET_OBJECTS:tetwarp_emulated_primitives> $<TARGET_OBJECTS:tetwarp_emulated_start>
     tests/emulated/test_backend_choice_emulated.cpp tests/emulated/test_cell_list_emulated.cpp
