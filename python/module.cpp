@@ -71,7 +71,7 @@ NB_MODULE(_core, module) {
         "tetwarp: sub-interpreters are not supported; import it in the main interpreter or in "
         "another process");
   }
-  nb::set_leak_warnings(false);  // objects that daemon threads hold at exit are no leaks
+  nb::set_leak_warnings(false);  // daemon threads still hold objects when a process ends
   module.doc() = "The library behind the package tetwarp.";
   module.attr("version") = TETWARP_VERSION;
   const nb::exception<CudaError> cuda_error(module, "CudaError", PyExc_RuntimeError);

@@ -24,7 +24,8 @@
 
 namespace tetwarp {
 namespace {
-/// Records of steps that a report has at least: memory does not grow with the length of a series.
+/// When a report has twice as many records of steps, the older half is dropped, so that memory does
+/// not grow with the length of a series.
 constexpr std::ptrdiff_t kept_steps = 500;
 
 void check_ranges(const std::vector<VolumeView>& sources,

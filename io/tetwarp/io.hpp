@@ -316,11 +316,12 @@ TETWARP_IO_EXPORT bool has_nifti_name(const std::string& path);
 /// True for other names of images of one array that can be written: .nrrd, .mha, .mhd, .mgh, .mgz.
 TETWARP_IO_EXPORT bool has_image_name(const std::string& path);
 
-/// What a series loses of its times by the format of its name, in one line with a remedy: NIfTI,
-/// NRRD and MetaImage keep a first time and an interval, FreeSurfer's images none, and programs
-/// that read VTKHDF want times that increase.
-/// @param output  the name
-/// @returns the line, empty if nothing is lost
+/// What a series loses of its times by the format of its name: NIfTI, NRRD and MetaImage keep a
+/// first time and an interval, FreeSurfer's images none; in VTKHDF, times that do not increase are
+/// refused by other programs.
+/// @param output  name of the file to write
+/// @param times   of the steps
+/// @returns one line with a remedy, empty if nothing is lost
 TETWARP_IO_EXPORT std::string times_warning(const std::string& output,
                                             const std::vector<double>& times);
 

@@ -20,17 +20,21 @@ struct SliceLook {
   bool operator==(const SliceLook&) const = default;
 };
 
-/// Number of a slice in a grid.
+/// @param place  0 to 1, across the axis
+/// @returns the number of the slice in a grid, from 0
 std::int64_t slice_number(const Grid& grid, std::size_t axis, double place);
 
 /// All, then each alone, then all again.
 void choose_next(SliceLook& slices);
 
-/// The shown slice that a ray meets first, and where; grids without a direction.
+/// Where a ray meets a slice.
 struct MetSlice {
-  std::size_t axis = 0;
-  double distance = 0;  ///< in lengths of the direction
+  std::size_t axis = 0;  ///< that the slice is across
+  double distance = 0;   ///< from the ray's origin, in lengths of its direction
 };
+
+/// @pre the axes of the grid are those of the world
+/// @returns the shown slice that a ray meets first; none: it meets none
 std::optional<MetSlice> slice_at(const Grid& grid,
                                  const SliceLook& slices,
                                  const Point3& origin,
