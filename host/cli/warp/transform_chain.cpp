@@ -176,7 +176,7 @@ std::vector<std::string> ChainNotes::lines(std::int64_t count) const {
 }
 
 double displacement_memory(const Grid& grid) {
-  constexpr double point_bytes = 80;  // places before and after, and lists of FieldInverse
+  constexpr double point_bytes = 60;  // places before and after, and lists of FieldInverse
   const std::int64_t slices = std::min(grid.dims[2], slices_of_a_part(grid));
   return 3.0 * sizeof(float) * static_cast<double>(grid.voxel_count()) +
          point_bytes * static_cast<double>(grid.dims[0] * grid.dims[1] * slices);
