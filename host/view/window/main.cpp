@@ -9,11 +9,9 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
 #include <utility>
@@ -27,6 +25,7 @@
 #include "host/view/window/screens.hpp"
 #include "host/view/window/view_window.hpp"
 #include "io/files/finished_file.hpp"
+#include "io/files/input_check.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -45,26 +44,13 @@ void check_display() {
                            "; start it from a desktop, through ssh -X, or within xvfb-run");
 }
 
-/// Results are not written to the files that the scene names.
-void check_results(const ViewOptions& options, const std::vector<std::string>& inputs) {
-  for (const std::string& output :
-       {options.screenshot, options.film, options.record, options.checkpoint}) {
-    std::error_code error;
-    for (const std::string& input : inputs) {
-      if (!output.empty() && std::filesystem::equivalent(output, input, error)) {
-        throw IoError(output, "", "is also an input; name another output");
-      }
-    }
-  }
-}
-
-/// The scene, with tools.
+/// The scene, with tools. Results are not written to the files that it names.
 Scene load(const ViewOptions& options) {
   std::vector<std::string> inputs;
   Scene scene = options.scene_file.empty()
                     ? parse_scene(scene_text(options.scene_name), options.scene_name)
                     : read_scene(options.scene_file, &inputs);
-  check_results(options, inputs);
+  for (const std::string& output : options.outputs()) check_no_input(output, inputs);
   add_tools(options, scene);
   return scene;
 }
@@ -152,7 +138,10 @@ void show_scene(const ViewOptions& options) {
 
 void run(const ViewOptions& options) {
   if (!options.make_keys.empty()) return write_screen_keys(options.make_keys);
-  if (options.tracker) return send_head(options);
+  if (!options.tracker.empty()) {
+    take_signals();
+    return send_head(options, signal_number);
+  }
   check_display();
   if (options.join.empty()) return show_scene(options);
   take_signals();

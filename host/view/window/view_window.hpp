@@ -14,11 +14,13 @@
 #include <vtkRenderer.h>
 
 #include "host/base/stopwatch.hpp"
+#include "host/view/hand/device_hand.hpp"
+#include "host/view/hand/scene_hand.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/window/curve_panel.hpp"
 #include "host/view/window/cut_plane.hpp"
-#include "host/view/window/device_hand.hpp"
+#include "host/view/window/full_screen.hpp"
 #include "host/view/window/mouse_style.hpp"
 #include "host/view/window/pointer.hpp"
 #include "host/view/window/scene_actors.hpp"
@@ -60,6 +62,7 @@ class ViewWindow {
   void set_up_window();
   void set_up_mouse();
   void set_up_devices();
+  bool update_devices();
   void on_timer();
   void draw();
   void set_up_drawing();
@@ -71,11 +74,8 @@ class ViewWindow {
   void save_next_picture();
   bool let_go();
   void turn_grabbing();
-  std::optional<Pick> pick_at(const EyeRay& ray);
   bool grab(int x, int y);
-  void probe();
   bool move_slice(int x, int y, int steps);
-  void pull(int x, int y);
   bool turn_window(int x, int y);
   void set_look(VolumeLook look);
   void note(const std::string& text);
@@ -114,8 +114,10 @@ class ViewWindow {
   std::optional<ValueLegend> legend_;
   std::optional<CurvePanel> curve_;
   WindowFilm film_;
-  std::optional<DeviceHand> devices_;
   CutPlane cut_plane_;
+  SceneHand hand_;
+  std::optional<DeviceHand> devices_;
+  FullScreen full_screen_{window_};
   const volatile std::sig_atomic_t* is_interrupted_ = nullptr;
   std::vector<Stopwatch> drawn_;  ///< since each picture of the last second
 };
