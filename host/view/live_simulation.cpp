@@ -3,7 +3,6 @@
 #include "host/view/live_simulation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <exception>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 namespace tetwarp::view {
 namespace {
 constexpr const char* replay_message = "a replay takes no input";
+
 /// Of this thread [s].
 double processor_seconds() {
   timespec time{};

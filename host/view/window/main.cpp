@@ -138,13 +138,13 @@ void show_scene(const ViewOptions& options) {
 
 void run(const ViewOptions& options) {
   if (!options.make_keys.empty()) return write_screen_keys(options.make_keys);
-  if (!options.tracker.empty()) {
-    take_signals();
-    return send_head(options, signal_number);
-  }
+  if (options.tracker == "-")
+    return send_head(options, signal_number);  // a signal ends its reading
+  const bool is_scene = options.join.empty();
+  if (!is_scene) take_signals();
+  if (!options.tracker.empty()) return send_head(options, signal_number);
   check_display();
-  if (options.join.empty()) return show_scene(options);
-  take_signals();
+  if (is_scene) return show_scene(options);
   show_screen(options, signal_number);
 }
 

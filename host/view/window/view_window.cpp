@@ -24,12 +24,11 @@ constexpr unsigned long timer_interval = 15;  // [ms]
 constexpr double resting_seconds = 0.4;       // until rays become finer
 constexpr double cut_step = 0.02;             // of the size of the scene
 constexpr double window_pixels = 400;         // by which the mouse moves the window by its width
-constexpr double window_distance = 0.6;       // from the eyes, for tracked devices [m]
 
-/// Without screens the window is one, of an observer at the origin.
+/// Without screens the window is one, at 0.6 m from an observer at the origin.
 RoomPlace room_place(const MasterScreens* screens, const Camera& camera) {
   Room own;
-  own.focus = window_distance;
+  own.focus = 0.6;
   return place_of_camera(screens != nullptr ? screens->room() : own, camera.eye, camera.target,
                          camera.up);
 }
@@ -88,7 +87,10 @@ void ViewWindow::set_up_devices() {
   actions.grab = [this](const Pick& point) { hand_.grab(point); };
   actions.pull = [this](const Point3& target) { hand_.pull(target); };
   actions.release = [this] { hand_.release(); };
-  actions.probe = [this](const EyeRay& ray) { note(hand_.probe(ray)); };
+  actions.probe = [this](const EyeRay& ray) {
+    note(hand_.probe(ray));
+    draw();
+  };
   devices_.emplace(open_devices(options_.devices), std::move(actions));
 }
 
