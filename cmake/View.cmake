@@ -129,7 +129,8 @@ message(STATUS "tetwarp: devices of tetwarp view: ${tetwarp_device_sources}")
 
 add_executable(tetwarp_view)
 tetwarp_sources(tetwarp_view host/view/window
-  curve_panel.cpp cut_plane.cpp full_screen.cpp mouse_style.cpp pointer.cpp scene_actors.cpp
+  curve_panel.cpp cut_plane.cpp full_screen.cpp mouse_style.cpp picture_meter.cpp pointer.cpp
+  scene_actors.cpp
   ${tetwarp_screen_sources} surface_actor.cpp value_legend.cpp view_window.cpp volume_actors.cpp
   window_camera.cpp window_film.cpp window_picture.cpp window_texts.cpp
   ALONE main.cpp)

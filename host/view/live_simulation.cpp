@@ -2,6 +2,8 @@
 /// The thread of a live simulation.
 #include "host/view/live_simulation.hpp"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <ctime>
 #include <exception>
@@ -16,11 +18,15 @@ namespace tetwarp::view {
 namespace {
 constexpr const char* replay_message = "a replay takes no input";
 
-/// Of this thread [s].
-double processor_seconds() {
+/// [s]
+double seconds_of(clockid_t clock) {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(clock, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+double processor_seconds() {
+  return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }
 }  // namespace
 
@@ -54,6 +60,12 @@ LiveSimulation::~LiveSimulation() {
 
 void LiveSimulation::begin() {
   thread_ = std::thread([this] { run(); });
+}
+
+double LiveSimulation::thread_seconds() {
+  clockid_t clock{};
+  pthread_getcpuclockid(thread_.native_handle(), &clock);
+  return seconds_of(clock);
 }
 
 void LiveSimulation::end() {

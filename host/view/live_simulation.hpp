@@ -77,6 +77,8 @@ class LiveSimulation {
   void set_listener(Listener listener) { listener_ = std::move(listener); }
 
   void begin();
+  /// Processor time of the thread so far, without those that help it [s]; from begin() to end().
+  double thread_seconds();
   /// Never waits. Of successive pulls only the last one acts.
   void give(const Order& order);
   TripleBuffer<LiveFrame>& frames() { return frames_; }

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <exception>
 #include <optional>
 #include <stdexcept>
@@ -68,27 +67,20 @@ void write_results(LiveSimulation& simulation, const ViewOptions& options) {
                       {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// Drawing is all that the other threads do if the simulation has one.
-/// @param start  processor time at which the simulation began
-/// @param wall   since then [s]
-void print_timing(const LiveSimulation& simulation,
-                  const ViewWindow& window,
-                  std::clock_t start,
-                  double wall) {
+/// @param wall  since the simulation began [s]
+void print_timing(const LiveSimulation& simulation, const ViewWindow& window, double wall) {
   const LiveSeconds& spent = simulation.seconds();
-  const std::int64_t pictures = window.picture_count();
   const auto each = [](double seconds, std::int64_t count) {
     return 1000 * seconds / static_cast<double>(std::max<std::int64_t>(count, 1));
   };
-  const double all = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   std::printf(
       "processor time: %lld steps of %.2f ms, %lld warps of %.2f ms, %lld pictures of %.2f ms\n",
       static_cast<long long>(simulation.log().ticks), each(spent.steps, simulation.log().ticks),
       static_cast<long long>(spent.warp_count), each(spent.warps, spent.warp_count),
-      static_cast<long long>(pictures), each(all - spent.steps - spent.warps, pictures));
+      static_cast<long long>(window.pictures().count()), 1000 * window.pictures().seconds());
   std::printf("wall time: %.1f steps/s in %.1f s, %lld over their time; %.1f pictures/s\n",
               static_cast<double>(simulation.log().ticks) / wall, wall,
-              static_cast<long long>(simulation.late_steps()), window.picture_rate());
+              static_cast<long long>(simulation.late_steps()), window.pictures().rate());
 }
 
 volatile std::sig_atomic_t signal_number = 0;
@@ -118,7 +110,6 @@ void show_scene(const ViewOptions& options) {
   ViewWindow window(scene, *simulation, options, screens ? &*screens : nullptr);
   take_signals();
   if (screens) screens->wait_for_screens();
-  const std::clock_t start = std::clock();
   const Stopwatch since_start;
   simulation->begin();
   window.run(signal_number);
@@ -128,7 +119,7 @@ void show_scene(const ViewOptions& options) {
   write_results(*simulation, options);
   if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   if (options.timing) {
-    print_timing(*simulation, window, start, wall);
+    print_timing(*simulation, window, wall);
     if (!window.delay().text().empty()) std::puts(window.delay().text().c_str());
     if (screens) std::puts(screens->status().c_str());
   }

@@ -43,6 +43,7 @@ ViewWindow::ViewWindow(const ViewScene& scene,
       options_(options),
       screens_(screens),
       quantity_(quantity_of(options.colors)),
+      pictures_(simulation),
       hand_(scene, simulation, [this] { return cut_plane_.cut(); }) {
   set_up_window();
   set_up_mouse();
@@ -137,10 +138,9 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   tell_screens();
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
   if (!options_.film.empty()) film_.require(options_.film);
-  const Stopwatch since_first;
-  const std::int64_t first_count = picture_count_;
+  pictures_.begin();
   events_->Start();
-  picture_rate_ = static_cast<double>(picture_count_ - first_count) / since_first.seconds();
+  pictures_.end();
   tell_screens();  // what the last events have changed
   attempt([this] { film_.end(); });
 }
@@ -206,9 +206,7 @@ void ViewWindow::set_up_drawing() {
 }
 
 void ViewWindow::note_picture(double seconds) {
-  std::erase_if(drawn_, [](const Stopwatch& since) { return since.seconds() > 1; });
-  drawn_.emplace_back();
-  ++picture_count_;
+  pictures_.drew();
   attempt([this] { film_.note(window_); });
   if (is_refined_) return;
   resting_ = Stopwatch();
@@ -248,7 +246,7 @@ void ViewWindow::note(const std::string& text) {
 }
 
 std::string ViewWindow::overlay() {
-  std::string text = overlay_text(scene_, simulation_.frames().front(), drawn_.size());
+  std::string text = overlay_text(scene_, simulation_.frames().front(), pictures_.last_second());
   if (screens_ != nullptr) text += "\n" + screens_->status();
   if (film_.is_running()) text += "\nfilm " + film_.path();
   if (devices_ && !devices_->problems().empty()) text += "\n" + devices_->problems();

@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
@@ -22,6 +21,7 @@
 #include "host/view/window/cut_plane.hpp"
 #include "host/view/window/full_screen.hpp"
 #include "host/view/window/mouse_style.hpp"
+#include "host/view/window/picture_meter.hpp"
 #include "host/view/window/pointer.hpp"
 #include "host/view/window/scene_actors.hpp"
 #include "host/view/window/screens.hpp"
@@ -49,9 +49,7 @@ class ViewWindow {
   bool has_picture() const { return volumes_.has_value(); }
   /// Writes what is shown. @pre has_picture() @throws IoError
   void save_picture(const std::string& path);
-  std::int64_t picture_count() const { return picture_count_; }
-  /// Pictures a second of wall time, from the first one on.
-  double picture_rate() const { return picture_rate_; }
+  const PictureMeter& pictures() const { return pictures_; }
   const InputDelay& delay() const { return delay_; }
   /// What ended the simulation, or empty.
   std::string failure();
@@ -105,8 +103,7 @@ class ViewWindow {
   RayQuality rays_;
   Stopwatch drawing_;  ///< since a picture was begun
   Stopwatch resting_;  ///< since the last picture of something that moved
-  std::int64_t picture_count_ = 0;
-  double picture_rate_ = 0;
+  PictureMeter pictures_;
   InputDelay delay_;
   double level_ = 0, width_ = 1;  ///< of the window of volumes
   double grab_depth_ = 0;         ///< of the point that is held, as on the display
@@ -119,7 +116,6 @@ class ViewWindow {
   std::optional<DeviceHand> devices_;
   FullScreen full_screen_{window_};
   const volatile std::sig_atomic_t* is_interrupted_ = nullptr;
-  std::vector<Stopwatch> drawn_;  ///< since each picture of the last second
 };
 
 }  // namespace tetwarp::view
