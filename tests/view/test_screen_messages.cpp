@@ -307,7 +307,7 @@ TEST(ScreenMessage, DamagedBytesAreReadOrRefused) {
 }
 
 TEST(SharedScene, DamagedBytesAreReadOrRefused) {
-  const Shared shared;
+  const Shared shared("stress");
   damage(shared.scene_bytes, 5, [](const Bytes& b) { scene_of(b); });
   const SharedScene scene = scene_of(shared.scene_bytes);
   damage(bytes_of(shared.state), 6, [&](const Bytes& b) {
