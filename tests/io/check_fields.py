@@ -55,6 +55,8 @@ def check_inverse(run, what, file, affine, forward):
     assert np.count_nonzero(near) > 20
     run("compose", file, "-o", "inverse.nii", "--like", "image.nii")
     run("warp", "image.nii", "inverse.nii", "-o", "by_field.nii")
+    line = run.refused("warp", "image.nii", file, "-o", "out.nii", "--outside", "background")
+    assert "leave out --outside" in line, line
     run("warp", "image.nii", file, "-o", "out.nii")
     assert np.array_equal(read_nifti(run.path("out.nii")), read_nifti(run.path("by_field.nii"))), what
     x = y + read_field(run.path("inverse.nii"))

@@ -76,6 +76,11 @@ TransformRun::TransformRun(const WarpArguments& arguments,
   const bool says_outside = std::ranges::any_of(
       arguments.given, [](const auto& option) { return option.first == "outside"; });
   if (parts_.file.ends_with_field && !says_outside) options_.only_in_field = true;
+  if (inverts() && options_.only_in_field) {
+    throw IoError(arguments.files.back(), "",
+                  "is inverted, and positions without an inverse keep their place; leave out "
+                  "--outside background");
+  }
   plan_.path = arguments.files.front();
   plan_.read = source.read;
   plan_.read.scratch = arguments.output;
@@ -95,8 +100,7 @@ bool TransformRun::inverts() const {
 
 std::string TransformRun::convention() const {
   if (!inverts()) return parts_.file.convention;
-  return fmt::format("the inverse of {}, within {:.2g}", parts_.file.convention,
-                     notes_.largest_residual);
+  return fmt::format("{}, inverted within {:.2g}", parts_.file.convention, notes_.largest_residual);
 }
 
 void TransformRun::plan_memory() {
