@@ -57,7 +57,8 @@ def prepare(folder):
         warp_python.write_nifti(place / "image.nii", images if count > 1 else images[0])
         turned = field * np.array((-1, -1, 1), np.float32)  # ITK's axes
         warp_python.write_nifti(place / "field.nii", np.moveaxis(turned, -1, 0)[:, None], "")
-        warp_python.write_nifti(place / "field_niftyreg.nii", np.moveaxis(field, -1, 0)[:, None], "NREG_TRANS")
+        warp_python.write_nifti(place / "field_niftyreg.nii", np.moveaxis(field, -1, 0)[:, None],
+                                "NREG_TRANS")
 
 
 # Each row: function of the folder of a case that imports, and returns a function to measure. That
@@ -266,7 +267,7 @@ def append(folder, row):
 def run_row(case, name, tetwarp_command, folder):
     """By the first interpreter that has its module."""
     one = dict.fromkeys(("OMP_NUM_THREADS", "ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS"), "1")
-    failed = dict(case=case, row=name, title=ROWS[name][3], start=ROWS[name][2])
+    failed = dict(case=case, row=name, title=ROWS[name][3].replace(" {}", ""), start=ROWS[name][2])
     for interpreter in warp_python.INTERPRETERS:
         command = [interpreter, __file__, "run", case, name, str(tetwarp_command), str(folder)]
         try:
