@@ -20,7 +20,7 @@ tetwarp_sources(tetwarp_command host/cli/simulate
 tetwarp_sources(tetwarp_command host/cli/tools
   chart.cpp cmd_compose.cpp cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp
   cmd_invert.cpp cmd_mesh.cpp cmd_plot.cpp cmd_points.cpp cmd_render.cpp displacement.cpp
-  field_inverse.cpp mesh_options.cpp read_array.cpp transform_chain.cpp)
+  mesh_options.cpp read_array.cpp transform_chain.cpp)
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp

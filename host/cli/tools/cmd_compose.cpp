@@ -114,40 +114,22 @@ std::vector<std::int64_t> steps_of(const ComposeArguments& arguments,
   return arguments.steps.of(first->step_count(), first->path());
 }
 
-/// The displacements of the chosen step, slice by slice of the grid.
-Volume composed(const ComposeArguments& arguments,
-                const std::vector<ChainLink>& links,
-                const Grid& grid,
-                ChainNotes& notes) {
-  Volume field = make_volume(grid, PixelType::float32, 3, "tetwarp_displacement");
-  const std::span<float> numbers = field.samples<float>();
-  const std::int64_t slice = grid.dims[0] * grid.dims[1];
-  const std::int64_t part = std::max<std::int64_t>(1, (std::int64_t{1} << 22) / slice);
-  std::size_t n = 0;
-  for (std::int64_t begin = 0; begin < grid.dims[2]; begin += part) {
-    std::vector<Point3> voxels;
-    for (std::int64_t k = begin; k < std::min(begin + part, grid.dims[2]); ++k) {
-      for (std::int64_t v = 0; v < slice; ++v) {
-        voxels.push_back(
-            grid.world_of({static_cast<double>(v % grid.dims[0]),
-                           static_cast<double>(v / grid.dims[0]), static_cast<double>(k)}));
-      }
-    }
-    std::vector<Point3> points = voxels;
-    for (auto link = links.rbegin(); link != links.rend(); ++link) {
-      link->apply(arguments.threads, points, notes);
-      stop_if_interrupted();
-    }
-    for (std::size_t v = 0; v < voxels.size(); ++v) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        numbers[n++] = static_cast<float>(points[v][axis] - voxels[v][axis]);
-      }
-    }
+/// The displacements of the chosen step. Files are in the order in which they are applied to an
+/// image, which is the reverse of that for positions of the output.
+ComposedField composed(const ComposeArguments& arguments,
+                       const std::vector<ChainLink>& links,
+                       const Grid& grid) {
+  std::vector<const ComposeLink*> parts;
+  for (auto link = links.rbegin(); link != links.rend(); ++link) {
+    for (const ComposeLink& part : link->parts()) parts.push_back(&part);
   }
-  return field;
+  return compose(parts, grid, arguments.threads, [](double) {
+    stop_if_interrupted();
+    return true;
+  });
 }
 
-void print_chain_notes(const std::string& output, const Grid& grid, const ChainNotes& notes) {
+void print_chain_notes(const std::string& output, const Grid& grid, const ComposeNotes& notes) {
   if (notes.outside > 0) {
     fmt::print(stderr,
                "tetwarp: {}: {} of {} positions were in no cell of a mesh and kept their "
@@ -197,9 +179,8 @@ int run_compose(const ComposeArguments& arguments) {
   check_compress(names, arguments.compress);
   const InterruptFlag flag;
   for (std::size_t s = 0; s < steps.size(); ++s) {
-    ChainNotes notes;
     for (ChainLink& link : links) link.choose(steps[s]);
-    const Volume field = composed(arguments, links, grid, notes);
+    const auto [field, reached, notes] = composed(arguments, links, grid);
     OutputWriter writer(names[s], grid, {array}, {.compress = arguments.compress}, false, 1,
                         ChunkShape::rows);
     writer.write(0, {{0, 0, 0}, grid.dims}, field.data.data());

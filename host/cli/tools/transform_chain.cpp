@@ -1,16 +1,12 @@
 /// @file transform_chain.cpp
-/// Applies one transform to points, forward or back.
+/// Reads the transforms of a file, forward or back.
 #include "host/cli/tools/transform_chain.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "host/cli/common/file_checks.hpp"
-#include "host/cli/common/interrupt.hpp"
-#include "host/cli/tools/field_inverse.hpp"
-#include "host/cli/tools/mapped_points.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -30,31 +26,6 @@ std::vector<Transform> links_of_file(Transform transform) {
 }
 }  // namespace
 
-AffineTransform inverse_of(const AffineTransform& affine) {
-  const std::array<double, 9>& m = affine.matrix;
-  AffineTransform inverse;
-  double determinant = 0;
-  for (std::size_t row = 0; row < 3; ++row) {
-    const std::size_t r1 = (row + 1) % 3, r2 = (row + 2) % 3;
-    for (std::size_t column = 0; column < 3; ++column) {
-      const std::size_t c1 = (column + 1) % 3, c2 = (column + 2) % 3;
-      inverse.matrix[3 * column + row] =
-          m[3 * r1 + c1] * m[3 * r2 + c2] - m[3 * r1 + c2] * m[3 * r2 + c1];
-      if (row == 0) determinant += m[column] * inverse.matrix[3 * column];
-    }
-  }
-  if (!(std::abs(determinant) > 0)) {
-    throw std::invalid_argument("its matrix is singular: it has no inverse");
-  }
-  for (double& entry : inverse.matrix) entry /= determinant;
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t n = 0; n < 3; ++n) {
-      inverse.offset[row] -= inverse.matrix[3 * row + n] * affine.offset[n];
-    }
-  }
-  return inverse;
-}
-
 ChainLink::ChainLink(const std::string& word,
                      const MeshReadOptions& mesh,
                      const std::optional<Axes>& axes,
@@ -72,6 +43,7 @@ ChainLink::ChainLink(const std::string& word,
   MeshReadOptions options = mesh;
   if (kind_of(path_) != FileKind::mesh) options.import.axes = axes.value_or(Axes::ras);
   mesh_.emplace(path_, options);
+  parts_.push_back({MovedMesh{{mesh_->mesh(), mesh_->mid_nodes()}, {}}, is_inverse_});
 }
 
 /// Those of the chosen step.
@@ -84,8 +56,8 @@ void ChainLink::read_transforms() {
     parts_.push_back({std::move(single), is_inverse_ != is_inverted});
   }
   if (is_inverse_) std::ranges::reverse(parts_);
-  for (Part& part : parts_) {
-    auto* const affine = std::get_if<AffineTransform>(&part.transform);
+  for (ComposeLink& part : parts_) {
+    auto* const affine = std::get_if<AffineTransform>(&std::get<Transform>(part.transform));
     if (affine == nullptr || !part.is_inverse) continue;
     try {
       *affine = inverse_of(*affine);
@@ -101,34 +73,17 @@ std::int64_t ChainLink::step_count() const {
 }
 
 void ChainLink::choose(std::int64_t step) {
-  if (step_count() == 1) return;
-  options_.step = step;
-  if (!mesh_) read_transforms();
+  const bool has_several = step_count() > 1;
+  if (has_several) options_.step = step;
+  if (mesh_) {
+    std::get<MovedMesh>(parts_.front().transform).deformed = mesh_->read_step(*options_.step);
+  } else if (has_several) {
+    read_transforms();
+  }
 }
 
 bool ChainLink::iterates() const {
-  return std::ranges::any_of(parts_, &Part::is_inverse);
-}
-
-void ChainLink::apply(int threads, std::vector<Point3>& points, ChainNotes& notes) const {
-  if (mesh_) {
-    MappedPoints mapped =
-        mapped_by(*mesh_, *options_.step, std::move(points),
-                  {.inverse = !is_inverse_, .threads = threads});  // as a warp samples its source
-    notes.outside += mapped.outside;
-    notes.straightened += mapped.straightened;
-    points = std::move(mapped.points);
-    return;
-  }
-  for (const Part& part : parts_) {
-    if (part.is_inverse) {
-      const InverseCounts counts = invert_field(part.transform, points, stop_if_interrupted);
-      notes.not_inverted += counts.not_found;
-      notes.largest_residual = std::max(notes.largest_residual, counts.largest_residual);
-    } else {
-      points = transformed(part.transform, std::move(points));
-    }
-  }
+  return !mesh_ && std::ranges::any_of(parts_, &ComposeLink::is_inverse);
 }
 
 }  // namespace tetwarp::cli

@@ -4,24 +4,16 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <tetwarp/io.hpp>
-#include <tetwarp/resample.hpp>
 #include <tetwarp/transform_file.hpp>
+
+#include "host/warp/compose/compose.hpp"
 
 namespace tetwarp::cli {
 
-/// What points met on their way.
-struct ChainNotes {
-  std::int64_t outside = 0;       ///< of a mesh: they kept their place there
-  std::int64_t straightened = 0;  ///< of a mesh: moved by straight tetrahedra, see CurvedMesh
-  std::int64_t not_inverted = 0;  ///< of a field: no position is taken there; kept their place
-  double largest_residual = 0;    ///< of those found [world]
-};
-
-/// One transform from positions of the output to positions in the source.
+/// One transform of a file from positions of the output to positions in the source.
 class ChainLink {
  public:
   /// @param word   path of the file; with "^-1" behind it the inverse
@@ -41,17 +33,14 @@ class ChainLink {
   std::int64_t step_count() const;                                 ///< 1 but for meshes and fields
   bool iterates() const;  ///< it has the inverse of a field or a spline, see invert_field()
 
-  /// Chooses the step that is applied; a file with a single step keeps that.
+  /// Chooses the step that is applied, and reads the positions of a mesh; a file with a single step
+  /// keeps that.
   void choose(std::int64_t step);
-  void apply(int threads, std::vector<Point3>& points, ChainNotes& notes) const;
+  /// Those of the chosen step, in the order in which positions of the output meet them.
+  /// @pre choose() has been called
+  const std::vector<ComposeLink>& parts() const { return parts_; }
 
  private:
-  /// One transform, no chain.
-  struct Part {
-    Transform transform;
-    bool is_inverse = false;  ///< to be applied; never of affine transforms
-  };
-
   void read_transforms();
 
   std::string path_;
@@ -59,10 +48,7 @@ class ChainLink {
   TransformReadOptions options_;  ///< with the chosen step, also of a mesh
   std::int64_t field_steps_ = 1;
   std::optional<MeshReader> mesh_;
-  std::vector<Part> parts_;  ///< in the order of application
+  std::vector<ComposeLink> parts_;  ///< affine transforms are inverted
 };
-
-/// The inverse. Throws std::invalid_argument when the matrix is singular.
-AffineTransform inverse_of(const AffineTransform& affine);
 
 }  // namespace tetwarp::cli

@@ -1,17 +1,20 @@
 /// @file field_inverse.cpp
 /// Damped Newton steps of many points at once, and cells whose images hold a point.
-#include "host/cli/tools/field_inverse.hpp"
+#include "host/warp/compose/field_inverse.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <variant>
 
+#include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
+#include "host/warp/cpu/transform_links.hpp"
 
-namespace tetwarp::cli {
+namespace tetwarp {
 namespace {
 constexpr int most_steps = 50;
 constexpr int most_halvings = 10;
@@ -192,11 +195,12 @@ class Bins {
   std::vector<std::vector<std::size_t>> bins_;
 };
 
-/// One inverse of many points.
-class FieldInverse {
+/// Finds the inverses of many points.
+class InverseFinder {
  public:
-  FieldInverse(const Transform& field, const std::function<void()>& progress)
-      : field_(field),
+  InverseFinder(const Transform& field, int threads, const std::function<void()>& progress)
+      : links_(links_of(field)),
+        threads_(threads),
         progress_(progress),
         cells_(field),
         spacing_(std::ranges::min(cells_.grid().spacing)) {
@@ -208,7 +212,7 @@ class FieldInverse {
     center_ = grid.world_of(last);
   }
 
-  InverseCounts apply(std::vector<Point3>& points) {
+  FieldInverse apply(std::vector<Point3>& points) {
     targets_ = points;
     is_found_.assign(points.size(), false);
     std::vector<Search> searches;
@@ -217,8 +221,10 @@ class FieldInverse {
     }
     run(searches, points);
     for (const int starts : {1, 3}) search_cells(starts, points);
-    counts_.not_found = std::ranges::count(is_found_, false);
-    return counts_;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (!is_found_[p]) result_.not_found.push_back(p);
+    }
+    return result_;
   }
 
  private:
@@ -270,12 +276,17 @@ class FieldInverse {
   }
 
   void evaluate(std::vector<Search>& searches) const {
-    std::vector<Point3> there(searches.size());
-    for (std::size_t s = 0; s < searches.size(); ++s) there[s] = searches[s].x;
-    there = transformed(field_, std::move(there));
-    for (std::size_t s = 0; s < searches.size(); ++s) {
-      searches[s].missing = minus(searches[s].target, there[s]);
-    }
+    const auto count = std::ssize(searches);
+    parallel_for(threads_for(threads_, count), count, [&](std::int64_t s) {
+      Search& search = searches[static_cast<std::size_t>(s)];
+      search.missing = minus(search.target, image_of(search.x));
+    });
+  }
+
+  /// Where the field takes x.
+  Point3 image_of(Point3 x) const {
+    for (const TransformLink& link : links_) link.move(x.data());
+    return x;
   }
 
   void keep_found(std::vector<Search>& searches, std::vector<Point3>& points) {
@@ -285,7 +296,7 @@ class FieldInverse {
       if (!(residual <= tolerance())) return false;
       is_found_[search.point] = true;
       points[search.point] = search.x;
-      counts_.largest_residual = std::max(counts_.largest_residual, residual);
+      result_.largest_residual = std::max(result_.largest_residual, residual);
       return true;
     });
   }
@@ -318,47 +329,47 @@ class FieldInverse {
     searches = std::move(nearer);
   }
 
-  /// By differences of the map, taken towards the center of the grid, beyond whose rim it jumps.
   std::vector<Point3> newton_steps(const std::vector<Search>& searches) const {
-    const double distance = 1e-4 * spacing_;
-    std::vector<Point3> moved;
-    for (const Search& search : searches) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        Point3 x = search.x;
-        x[axis] += x[axis] > center_[axis] ? -distance : distance;
-        moved.push_back(x);
-      }
-    }
-    const std::vector<Point3> there = transformed(field_, moved);
-    std::vector<Point3> steps;
-    for (std::size_t s = 0; s < searches.size(); ++s) {
-      const Point3 here = minus(searches[s].target, searches[s].missing);
-      std::array<Point3, 3> columns;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double change = moved[3 * s + axis][axis] - searches[s].x[axis];
-        columns[axis] = minus(there[3 * s + axis], here);
-        for (double& entry : columns[axis]) entry /= change;
-      }
-      steps.push_back(solution(columns, searches[s].missing));
-    }
+    std::vector<Point3> steps(searches.size());
+    const auto count = std::ssize(searches);
+    parallel_for(threads_for(threads_, count), count, [&](std::int64_t s) {
+      steps[static_cast<std::size_t>(s)] = newton_step(searches[static_cast<std::size_t>(s)]);
+    });
     return steps;
   }
 
-  const Transform& field_;
+  /// By differences of the map, taken towards the center of the grid, beyond whose rim it jumps.
+  Point3 newton_step(const Search& search) const {
+    const double distance = 1e-4 * spacing_;
+    const Point3 here = minus(search.target, search.missing);
+    std::array<Point3, 3> columns;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Point3 moved = search.x;
+      moved[axis] += moved[axis] > center_[axis] ? -distance : distance;
+      const double change = moved[axis] - search.x[axis];
+      columns[axis] = minus(image_of(moved), here);
+      for (double& entry : columns[axis]) entry /= change;
+    }
+    return solution(columns, search.missing);
+  }
+
+  std::vector<TransformLink> links_;
+  int threads_;
   const std::function<void()>& progress_;
   ImageCells cells_;
   double spacing_;
   Point3 center_{};
   std::vector<Point3> targets_;
   std::vector<bool> is_found_;
-  InverseCounts counts_;
+  FieldInverse result_;
 };
 }  // namespace
 
-InverseCounts invert_field(const Transform& field,
-                           std::vector<Point3>& points,
-                           const std::function<void()>& progress) {
-  return FieldInverse(field, progress).apply(points);
+FieldInverse invert_field(const Transform& field,
+                          std::vector<Point3>& points,
+                          int threads,
+                          const std::function<void()>& progress) {
+  return InverseFinder(field, threads, progress).apply(points);
 }
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp

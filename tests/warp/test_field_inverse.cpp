@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "host/cli/tools/field_inverse.hpp"
+#include "host/warp/compose/field_inverse.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -121,16 +121,16 @@ TEST(FieldInverse, OfLinearMapsIsTheInverseMatrix) {
       }
       ASSERT_GT(points.size(), 300U) << m;
 
-      const cli::InverseCounts counts = cli::invert_field(field, images);
+      const FieldInverse inverse = invert_field(field, images, 3);
 
-      EXPECT_EQ(counts.not_found, 0) << m;
-      EXPECT_LE(counts.largest_residual, 1e-6 * 0.5);
+      EXPECT_EQ(inverse.not_found.size(), 0U) << m;
+      EXPECT_LE(inverse.largest_residual, 1e-6 * 0.5);
       EXPECT_LT(largest_distance(images, points), 1e-5) << m;  // displacements are float32
     }
   }
 }
 
-/// Also where the field folds, several times over.
+/// Also where the field folds, several times over; with the same bits for any number of threads.
 TEST(FieldInverse, IsFoundForEveryImage) {
   std::mt19937 random(11);
   for (const double size : {0.1, 0.5, 2.0}) {
@@ -144,12 +144,14 @@ TEST(FieldInverse, IsFoundForEveryImage) {
     }
     for (const Transform& field : std::array<Transform, 2>{linear, spline}) {
       const std::vector<Point3> images = transformed(field, random_points(grid, 0, 1, 2000));
-      std::vector<Point3> found = images;
+      std::vector<Point3> found = images, alone = images;
 
-      const cli::InverseCounts counts = cli::invert_field(field, found);
+      const FieldInverse inverse = invert_field(field, found, 3);
 
-      EXPECT_EQ(counts.not_found, 0) << size << " " << field.index();
+      EXPECT_EQ(inverse.not_found.size(), 0U) << size << " " << field.index();
       EXPECT_LE(largest_distance(transformed(field, found), images), 1e-6 * 0.5);
+      invert_field(field, alone, 1);
+      EXPECT_EQ(alone, found);
     }
   }
 }
@@ -167,9 +169,9 @@ TEST(FieldInverse, CountsWhatNothingIsTakenToAndKeepsItsPlace) {
   for (int i = -4; i < 14; ++i) points.push_back({static_cast<double>(i), 2.3, 1.7});
   const std::vector<Point3> targets = points;
 
-  const cli::InverseCounts counts = cli::invert_field(field, points);
+  const FieldInverse inverse = invert_field(field, points, 3);
 
-  EXPECT_EQ(counts.not_found, 3);
+  EXPECT_EQ(inverse.not_found.size(), 3U);
   for (std::size_t p = 0; p < points.size(); ++p) {
     const double i = targets[p][0];
     const double expected = i < -0.5 || i > 9.5 || i < 2.5 ? i : i - 3;  // beyond it nothing moves
@@ -187,7 +189,7 @@ TEST(FieldInverse, OfAMapThatIsSingularIsFoundInItsImageAlone) {
   std::vector<Point3> points{{3.2, 4.1, 4}, {3.2, 4.1, 4.75}, {1, 2, 7}, {6.5, 6.25, 3.6}};
   const std::vector<Point3> targets = points;
 
-  EXPECT_EQ(cli::invert_field(field, points).not_found, 2);
+  EXPECT_EQ(invert_field(field, points, 1).not_found, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(points[1], targets[1]);
   EXPECT_EQ(points[2], targets[2]);
 }
