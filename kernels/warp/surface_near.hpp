@@ -89,8 +89,7 @@ class SurfaceNear {
   static constexpr int lanes = 4;  ///< positions of a row
 
   /// @param center  of the ball [world], as of SurfaceNode::at
-  /// @param reach   distance from which on positions have no nearest point; infinite: none is so
-  /// far
+  /// @param reach   distance from which on positions have no nearest point; infinite: all have one
   TETWARP_ANY_EXEC SurfaceNear(const SurfaceTree& tree,
                                const double* center,
                                double radius,

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <stdexcept>
 #include <tetwarp/error.hpp>
 #include <tetwarp/map_points.hpp>
 #include <utility>
