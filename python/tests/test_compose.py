@@ -157,7 +157,7 @@ def test_wrong_arguments_are_named(volume, mesh, twisted, field):
             ([volume], {"inverse": [True], **grid}, r"transforms\[0\]: expected displacements"),
             ([(*mesh, twisted[1:])], grid, r"transforms\[0\]: deformed: expected \d+ rows"),
             ([np.eye(3)], grid, r"transforms\[0\]: expected a Field"),
-            ([flat], {"inverse": [True], **grid}, "singular"),
+            ([flat], {"inverse": [True], **grid}, r"transforms\[0\]: its matrix is singular"),
             ([TURN], {"threads": -1, **grid}, "threads: -1")):
         with pytest.raises(ValueError, match=message):
             tetwarp.compose(transforms, **{"order": "image", **keywords})

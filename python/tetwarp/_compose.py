@@ -81,13 +81,24 @@ def _mesh_link(rest: Any, cells: Any, deformed: Any, where: str = "") -> tuple[A
             nodes_of(deformed, f"{where}deformed", len(start)))
 
 
-def _compose_link(value: Any, name: str, is_inverse: bool) -> Any:
+def _inverse_matrix(value: Any, name: str) -> np.ndarray:
+    matrix = matrix_of(value, name)
+    try:
+        return np.asarray(_core.inverse_matrix(matrix))
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def _compose_link(value: Any, name: str, is_inverse: bool) -> tuple[Any, bool]:
+    """A transform as the library takes it, and whether its inverse is meant."""
     if isinstance(value, InverseMesh) or (isinstance(value, (tuple, list)) and len(value) == 3):
         rest, cells, deformed = value
-        return _mesh_link(rest, cells, deformed, f"{name}: ")
-    if is_inverse and isinstance(value, (Field, Volume)):  # of either convention
-        return displacements_of(value, name)
-    return link_of(value, name)
+        return _mesh_link(rest, cells, deformed, f"{name}: "), is_inverse
+    if not is_inverse:
+        return link_of(value, name), False
+    if isinstance(value, (Field, Volume)):  # of either convention
+        return displacements_of(value, name), True
+    return _inverse_matrix(value, name), False
 
 
 def _composed(links: Sequence[tuple[Any, bool]], grid: Grid, threads: int,
@@ -169,7 +180,7 @@ def compose(
         for number, flag in enumerate(list_of(inverse, "inverse", "a flag per transform"))]
     if len(flags) != len(given):
         raise ValueError(f"inverse: expected {len(given)} flags, one per transform, got {len(flags)}")
-    links = [(_compose_link(one, f"transforms[{number}]", flag), flag)
+    links = [_compose_link(one, f"transforms[{number}]", flag)
              for number, (one, flag) in enumerate(zip(given, flags))]
     return _composed(links[::-1] if order == "image" else links, grid, threads, progress)
 
@@ -244,8 +255,4 @@ def invert(
         return _composed([(link, True)], grid, threads, progress)
     if reference is not None:
         raise ValueError("reference: is for fields; the inverse of a matrix is a matrix")
-    matrix = matrix_of(transform, "transform")
-    try:
-        return np.asarray(_core.inverse_matrix(matrix))
-    except ValueError as error:
-        raise ValueError(f"transform: {error}") from None
+    return _inverse_matrix(transform, "transform")
