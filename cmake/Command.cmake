@@ -24,9 +24,8 @@ tetwarp_sources(tetwarp_command host/cli/tools
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
-  batch.cpp batch_file.cpp batch_list.cpp batch_order.cpp cmd_warp.cpp field_inverse.cpp
-  image_cells.cpp job_process.cpp job_share.cpp position_bins.cpp transform_chain.cpp
-  transform_job.cpp transform_run.cpp warp_job.cpp)
+  batch.cpp batch_file.cpp batch_list.cpp batch_order.cpp cmd_warp.cpp job_process.cpp
+  job_share.cpp transform_chain.cpp transform_job.cpp transform_run.cpp warp_job.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp/volumes
   block_warper.cpp part_exchange.cpp part_queue.cpp report_exchange.cpp series_in_parts.cpp
   step_writer.cpp volume_blocks.cpp volume_run.cpp volume_sources.cpp volume_steps.cpp

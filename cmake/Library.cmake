@@ -110,6 +110,8 @@ tetwarp_sources(tetwarp host/simulate/surfaces
 tetwarp_sources(tetwarp host/warp
   backend_choice.cpp block_mesh.cpp blocks.cpp curve_checks.cpp geometry.cpp hex_split.cpp map_points.cpp
   outside_surface.cpp point_search.cpp step_queue.cpp transform_checks.cpp warper.cpp)
+tetwarp_sources(tetwarp host/warp/compose
+  compose.cpp field_inverse.cpp image_cells.cpp mesh_inverse.cpp position_bins.cpp)
 tetwarp_sources(tetwarp host/warp/cpu
   backend_cpu.cpp cell_overlap.cpp face_neighbors.cpp map_points_cpu.cpp operator_plan.cpp
   operator_taps.cpp overlap_stage_cpu.cpp overlap_weights.cpp resample.cpp resample_blocks_cpu.cpp

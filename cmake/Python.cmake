@@ -34,8 +34,8 @@ if(SKBUILD_SABI_COMPONENT)  # set from CPython 3.12 on, by pyproject.toml
 endif()
 nanobind_add_module(tetwarp_python ${tetwarp_python_abi} NB_STATIC NB_SUPPRESS_WARNINGS
   NB_DOMAIN tetwarp
-  python/array_warper.cpp python/arrays.cpp python/bind_certify.cpp python/bind_contact.cpp python/bind_files.cpp
-  python/bind_mesh.cpp python/bind_operator.cpp python/bind_resample.cpp python/bind_simulate.cpp
+  python/array_warper.cpp python/arrays.cpp python/bind_certify.cpp python/bind_compose.cpp python/bind_contact.cpp
+  python/bind_files.cpp python/bind_mesh.cpp python/bind_operator.cpp python/bind_resample.cpp python/bind_simulate.cpp
   python/bind_tracker.cpp python/bind_volume.cpp python/bind_warp.cpp python/interruption.cpp python/module.cpp)
 set(tetwarp_package ${PROJECT_BINARY_DIR}/python/tetwarp)
 set_target_properties(tetwarp_python PROPERTIES
@@ -50,7 +50,7 @@ if(TETWARP_BUNDLE)
     -Wl,--exclude-libs,ALL -Wl,--wrap=stdout -Wl,--wrap=stderr)
 endif()
 
-set(tetwarp_python_files __init__.py _arrays.py _autograd.py _bridges.py _certify.py _contact.py
+set(tetwarp_python_files __init__.py _arrays.py _autograd.py _bridges.py _certify.py _compose.py _contact.py
   _device.py _dicom.py _fields.py _files.py _grid.py _mesh.py _operator.py _packages.py _resample.py
   _result.py _simulate.py _sources.py _tracker.py _values.py _volume.py _warp.py _warper.py py.typed)
 file(MAKE_DIRECTORY ${tetwarp_package})

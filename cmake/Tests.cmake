@@ -141,6 +141,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_source_shares.cpp
     tests/warp/test_voxel_bodies.cpp
     tests/warp/test_face_sign.cpp
+    tests/warp/test_field_inverse.cpp
     tests/warp/test_hex_split.cpp
     tests/warp/test_output_edges.cpp
     tests/warp/test_resample.cpp

@@ -6,6 +6,7 @@
 namespace tetwarp::python {
 
 void bind_certify(nanobind::module_& module);
+void bind_compose(nanobind::module_& module);
 void bind_contact(nanobind::module_& module);
 void bind_files(nanobind::module_& module);
 void bind_mesh(nanobind::module_& module);

@@ -188,8 +188,7 @@ class MeshFile {
            bool keeps_curved)
       : reader_(open(path, rest_step, axes, keeps_curved)) {}
   ~MeshFile() {
-    const std::lock_guard lock(file_mutex());
-    reader_.reset();
+    file_call([this] { reader_.reset(); });
   }
   MeshFile(const MeshFile&) = delete;
   MeshFile& operator=(const MeshFile&) = delete;

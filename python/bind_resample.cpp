@@ -2,12 +2,10 @@
 /// Volumes resampled by affine transforms and displacement fields.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <array>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <tetwarp/resample.hpp>
@@ -19,26 +17,10 @@
 #include "python/choices.hpp"
 #include "python/interruption.hpp"
 #include "python/overlap.hpp"
+#include "python/transforms.hpp"
 
 namespace tetwarp::python {
 namespace {
-/// An array of shape (4, 4), or a pair of a grid and displacements (z, y, x, 3).
-SingleTransform link_of(const nb::handle& given) {
-  if (nb::isinstance<nb::tuple>(given)) {
-    const auto [grid, values] = nb::cast<std::pair<Grid, In<float>>>(given);
-    return DisplacementField{grid, vector_of(values)};
-  }
-  const auto matrix = nb::cast<In<double, nb::shape<4, 4>>>(given);
-  AffineTransform affine;
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) {
-      affine.matrix[3 * row + column] = matrix(row, column);
-    }
-    affine.offset[row] = matrix(row, 3);
-  }
-  return affine;
-}
-
 void resample_arrays(const std::vector<AnySamples>& sources,
                      const Grid& grid,
                      const nb::list& links,
@@ -52,7 +34,7 @@ void resample_arrays(const std::vector<AnySamples>& sources,
   std::vector<void*> samples;
   for (const AnyOut& output : outputs) samples.push_back(output.data());
   TransformChain chain;
-  for (const nb::handle& link : links) chain.links.push_back(link_of(link));
+  for (const nb::handle& link : links) chain.links.push_back(transform_of<SingleTransform>(link));
   const Transform transform = std::move(chain);  // displacements are not copied
   const auto word = [&](const char* name) { return nb::cast<std::string>(options[name]); };
   const auto gaussian = nb::cast<std::array<double, 2>>(options["label_gaussian"]);

@@ -87,6 +87,7 @@ NB_MODULE(_core, module) {
   python::bind_warp(module);
   python::bind_operator(module);
   python::bind_resample(module);
+  python::bind_compose(module);
   python::bind_files(module);
   python::bind_certify(module);
   python::bind_contact(module);

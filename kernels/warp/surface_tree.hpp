@@ -43,42 +43,41 @@ TETWARP_HD double dot_product(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Takes the point with these weights of a triangle's second and third node if it is nearer; of
-/// equally near ones that of the lower triangle.
-TETWARP_HD void take_nearer(const SurfaceNode* const* corners,
-                            const double* x,
-                            double w1,
-                            double w2,
-                            std::int64_t triangle,
-                            NearestSurfacePoint& nearest) {
-  double apart[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double a = corners[0]->at[axis];
-    apart[axis] = a - x[axis] + (w1 * (corners[1]->at[axis] - a) + w2 * (corners[2]->at[axis] - a));
+/// A triangle beside a position.
+struct TriangleBeside {
+  const SurfaceNode* corners[3];
+  double from_x[3];           ///< from the position to the first corner
+  double side1[3], side2[3];  ///< from there to the others
+
+  /// Takes the point with these weights of the second and third corner if it is nearer; of equally
+  /// near ones that of the lower triangle.
+  TETWARP_HD void take_nearer(double w1,
+                              double w2,
+                              std::int64_t triangle,
+                              NearestSurfacePoint& nearest) const {
+    double apart[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      apart[axis] = from_x[axis] + (w1 * side1[axis] + w2 * side2[axis]);
+    }
+    const double distance2 = dot_product(apart, apart);
+    const bool is_nearer = distance2 < nearest.distance2 ||
+                           (distance2 == nearest.distance2 && triangle < nearest.triangle);
+    if (!is_nearer) return;
+    nearest.distance2 = distance2;
+    nearest.triangle = triangle;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = corners[0]->to_rest[axis];
+      nearest.to_rest[axis] =
+          a + (w1 * (corners[1]->to_rest[axis] - a) + w2 * (corners[2]->to_rest[axis] - a));
+    }
   }
-  const double distance2 = dot_product(apart, apart);
-  const bool is_nearer = distance2 < nearest.distance2 ||
-                         (distance2 == nearest.distance2 && triangle < nearest.triangle);
-  if (!is_nearer) return;
-  nearest.distance2 = distance2;
-  nearest.triangle = triangle;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double a = corners[0]->to_rest[axis];
-    nearest.to_rest[axis] =
-        a + (w1 * (corners[1]->to_rest[axis] - a) + w2 * (corners[2]->to_rest[axis] - a));
-  }
-}
+};
 
 /// The parameter of the point of a segment that is nearest to x; of a segment without length 0.
-TETWARP_HD double nearest_along(const double* from, const double* to, const double* x) {
-  double edge[3], apart[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    edge[axis] = to[axis] - from[axis];
-    apart[axis] = x[axis] - from[axis];
-  }
-  const double length2 = dot_product(edge, edge);
-  const double along = length2 > 0 ? dot_product(edge, apart) / length2 : 0;
-  return min_of(max_of(along, 0.0), 1.0);
+/// @param along    product of the segment and the way from its beginning to x
+/// @param length2  square of its length
+TETWARP_HD double nearest_along(double along, double length2) {
+  return min_of(max_of(length2 > 0 ? along / length2 : 0, 0.0), 1.0);
 }
 
 /// The nearest point of a triangle: of its edges, or within it. The edges are always tried, since
@@ -87,25 +86,28 @@ TETWARP_HD_RARE void take_triangle(const SurfaceTree& tree,
                                    std::int64_t triangle,
                                    const double* x,
                                    NearestSurfacePoint& nearest) {
-  const SurfaceNode* corners[3];
-  for (int c = 0; c < 3; ++c) corners[c] = &tree.nodes[tree.triangles[3 * triangle + c]];
-  const double *a = corners[0]->at, *b = corners[1]->at, *c = corners[2]->at;
-  const double ab = nearest_along(a, b, x), ac = nearest_along(a, c, x),
-               bc = nearest_along(b, c, x);
-  take_nearer(corners, x, ab, 0, triangle, nearest);
-  take_nearer(corners, x, 0, ac, triangle, nearest);
-  take_nearer(corners, x, 1 - bc, bc, triangle, nearest);
-  double e1[3], e2[3], p[3];
+  TriangleBeside t;
+  for (int c = 0; c < 3; ++c) t.corners[c] = &tree.nodes[tree.triangles[3 * triangle + c]];
+  const double *a = t.corners[0]->at, *b = t.corners[1]->at, *c = t.corners[2]->at;
+  double side3[3], p[3], q[3];  // from the second to the third corner, and from both to x
   for (int axis = 0; axis < 3; ++axis) {
-    e1[axis] = b[axis] - a[axis];
-    e2[axis] = c[axis] - a[axis];
+    t.from_x[axis] = a[axis] - x[axis];
+    t.side1[axis] = b[axis] - a[axis];
+    t.side2[axis] = c[axis] - a[axis];
+    side3[axis] = c[axis] - b[axis];
     p[axis] = x[axis] - a[axis];
+    q[axis] = x[axis] - b[axis];
   }
-  const double g11 = dot_product(e1, e1), g12 = dot_product(e1, e2), g22 = dot_product(e2, e2);
-  const double p1 = dot_product(e1, p), p2 = dot_product(e2, p), area2 = g11 * g22 - g12 * g12;
+  const double g11 = dot_product(t.side1, t.side1), g12 = dot_product(t.side1, t.side2);
+  const double g22 = dot_product(t.side2, t.side2), area2 = g11 * g22 - g12 * g12;
+  const double p1 = dot_product(t.side1, p), p2 = dot_product(t.side2, p);
+  const double on3 = nearest_along(dot_product(side3, q), dot_product(side3, side3));
+  t.take_nearer(nearest_along(p1, g11), 0, triangle, nearest);
+  t.take_nearer(0, nearest_along(p2, g22), triangle, nearest);
+  t.take_nearer(1 - on3, on3, triangle, nearest);
   const double w1 = (g22 * p1 - g12 * p2) / area2, w2 = (g11 * p2 - g12 * p1) / area2;
   // False for NaN, too.
-  if (w1 >= 0 && w2 >= 0 && w1 + w2 <= 1) take_nearer(corners, x, w1, w2, triangle, nearest);
+  if (w1 >= 0 && w2 >= 0 && w1 + w2 <= 1) t.take_nearer(w1, w2, triangle, nearest);
 }
 
 /// Square of the distance to a box; 0 inside.
@@ -118,26 +120,28 @@ TETWARP_HD double box_distance2(const SurfaceBox& box, const double* x) {
   return sum;
 }
 
-/// The nearest point of the surface, where it is nearer than `nearest`; of equally near triangles
-/// the one of the lowest number. So the result does not depend on where the search begins.
-///
-/// Goes down to the nearer child first; the bits of `trail` tell on which levels the other one has
-/// been visited. Source: A. Áfra and L. Szirmay-Kalos, "Stackless multi-BVH traversal for CPU, MIC
-/// and GPU ray tracing", 2014.
-TETWARP_HD_RARE void find_nearest(const SurfaceTree& tree,
-                                  const double* x,
-                                  NearestSurfacePoint& nearest) {
-  const std::int64_t leaves = tree.leaves();
+/// An error of distances between a position and triangles, due to rounding [world].
+TETWARP_HD double distance_rounding(const SurfaceTree& tree, const double* x) {
   const SurfaceBox& all = tree.boxes[1];
   double size = 0;
   for (int axis = 0; axis < 3; ++axis) {
     size += fabs(x[axis]) + max_of(fabs(all.low[axis]), fabs(all.high[axis]));
   }
-  const double rounding = 1e-14 * size;  // of distances
-  const auto is_near = [&](std::int64_t node) {
-    const double limit = sqrt(nearest.distance2) + rounding;
-    return box_distance2(tree.boxes[node], x) <= limit * limit;
-  };
+  return 1e-14 * size;
+}
+
+/// Calls visit(leaf) for the leaves whose boxes are at most as far from x as is_near(node) allows,
+/// until visit returns false.
+///
+/// Goes down to the nearer child first; the bits of `trail` tell on which levels the other one has
+/// been visited. Source: A. Áfra and L. Szirmay-Kalos, "Stackless multi-BVH traversal for CPU, MIC
+/// and GPU ray tracing", 2014.
+template <class IsNear, class Visit>
+TETWARP_HD void visit_leaves(const SurfaceTree& tree,
+                             const double* x,
+                             const IsNear& is_near,
+                             const Visit& visit) {
+  const std::int64_t leaves = tree.leaves();
   std::uint64_t trail = 0;
   for (std::int64_t node = 1;;) {
     if (is_near(node)) {
@@ -149,10 +153,7 @@ TETWARP_HD_RARE void find_nearest(const SurfaceTree& tree,
         trail <<= 1;
         continue;
       }
-      const std::int64_t past = tree.first_triangle(node - leaves + 1);
-      for (std::int64_t t = tree.first_triangle(node - leaves); t < past; ++t) {
-        take_triangle(tree, t, x, nearest);
-      }
+      if (!visit(node - leaves)) return;
     }
     while ((trail & 1) != 0) {
       trail >>= 1;
@@ -162,6 +163,25 @@ TETWARP_HD_RARE void find_nearest(const SurfaceTree& tree,
     node ^= 1;
     trail |= 1;
   }
+}
+
+/// The nearest point of the surface, where it is nearer than `nearest`; of equally near triangles
+/// the one of the lowest number. So the result does not depend on where the search begins.
+TETWARP_HD_RARE void find_nearest(const SurfaceTree& tree,
+                                  const double* x,
+                                  NearestSurfacePoint& nearest) {
+  const double rounding = distance_rounding(tree, x);
+  double limit2 = square_of(sqrt(nearest.distance2) + rounding);
+  visit_leaves(
+      tree, x, [&](std::int64_t node) { return box_distance2(tree.boxes[node], x) <= limit2; },
+      [&](std::int64_t leaf) {
+        const std::int64_t past = tree.first_triangle(leaf + 1);
+        for (std::int64_t t = tree.first_triangle(leaf); t < past; ++t) {
+          take_triangle(tree, t, x, nearest);
+        }
+        limit2 = square_of(sqrt(nearest.distance2) + rounding);
+        return true;
+      });
 }
 
 /// One index = one node of the surface; any order.

@@ -35,7 +35,7 @@ def test_matrices_may_be_sparse_in_any_form():
     assert np.array_equal(tetwarp.solve_contacts(**problem).impulse, expected)
 
 
-def test_a_tuple_of_four_is_a_sparse_matrix_where_it_can_be_one():
+def test_a_tuple_of_four_is_a_sparse_matrix_where_it_can_be_nothing_else():
     from tetwarp._contact import csr_of
 
     def dense_of(value):
@@ -45,7 +45,11 @@ def test_a_tuple_of_four_is_a_sparse_matrix_where_it_can_be_one():
         matrix[rows, csr.indices] = csr.data
         return matrix.tolist()
 
-    assert dense_of(([5.0, 7], [0, 3], [0, 2], (1, 4))) == [[5, 0, 0, 7]]
+    both = ([5.0, 7], [0, 3], [0, 2], (1, 4))
+    with pytest.raises(ValueError, match="jacobian: may be a sparse row of two entries or four rows"):
+        csr_of(both, "jacobian")
+    assert dense_of(tetwarp.Csr(*both)) == [[5, 0, 0, 7]]
+    assert dense_of(np.array(both)) == [[5, 7], [0, 3], [0, 2], [1, 4]]
     assert dense_of(([5.0], [1], [0, 1], (1, 2))) == [[0, 5]]
     for rows in (((1, 0), (0, 1), (1, 1), (2, 3)), ((5, 7), (0, 1), (0, 2), (2, 2)),
                  ((5, 7), (0, 4), (0, 2), (1, 4)), ((5, 7), (0, 1), (0, 1), (1, 2)),

@@ -81,6 +81,41 @@ def test_points_and_operators_take_them(volume, mesh, twisted):
     assert np.array_equal(out.array, operator.adjoint(x))
 
 
+#: Libraries that hold arrays in memory of the host, and what makes one of theirs.
+LIBRARIES = {
+    "numpy": lambda numpy, array: array,
+    "torch": lambda torch, array: torch.from_numpy(array.copy()),
+    "jax": lambda jax, array: jax.numpy.asarray(array),
+    "warp": lambda warp, array: warp.array(array, device="cpu"),
+}
+
+
+@pytest.mark.parametrize("name", LIBRARIES)
+def test_arrays_come_back_as_those_of_their_library(name, volume, mesh, twisted):
+    library = pytest.importorskip(name)
+    rounded = twisted.astype(np.float32)  # as JAX has them
+    expected = tetwarp.warp(volume, *mesh, rounded, outputs=("owner", "displacement"))
+    samples, moved = (LIBRARIES[name](library, array) for array in (volume.array, rounded))
+
+    result = tetwarp.warp(samples, *mesh, moved, affine=volume.affine, outputs=("owner", "displacement"))
+    there = tetwarp.transform_points(moved, *mesh, twisted, inverse=True)
+
+    kind = type(samples)
+    for mine, its in ((result.volume, expected.volume), (result.owner, expected.owner),
+                      (result.displacement, expected.displacement),
+                      (there, tetwarp.transform_points(rounded, *mesh, twisted, inverse=True))):
+        assert isinstance(mine, kind)
+        array = np.from_dlpack(mine)  # JAX has no float64 unless it is told to
+        assert np.array_equal(array, its.astype(array.dtype), equal_nan=True)
+    out = LIBRARIES[name](library, np.zeros_like(volume.array))
+    if name == "jax":  # whose arrays never change
+        with pytest.raises(ValueError, match="out: .* those of JAX never change"):
+            tetwarp.warp(volume, *mesh, rounded, out=out)
+    else:
+        assert tetwarp.warp(volume, *mesh, rounded, out=out).volume is out
+    assert np.array_equal(np.from_dlpack(out), expected.volume if name != "jax" else 0 * expected.volume)
+
+
 @pytest.mark.parametrize("name", ["volume", "rest", "cells", "deformed", "out"])
 def test_memory_of_a_device_is_refused(volume, mesh, twisted, name):
     arguments = dict(volume=volume.array, rest=mesh.points, cells=mesh.cells, deformed=twisted,

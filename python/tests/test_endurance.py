@@ -262,3 +262,41 @@ assert all(event.wait(30) for event in events)
         done = subprocess.run([sys.executable, code], text=True, capture_output=True, timeout=60,
                               env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}, check=False)
         assert done.returncode == 0 and not done.stderr, done.stderr
+
+
+def test_a_mesh_file_that_is_dropped_lets_other_threads_run(tmp_path):
+    """While another thread reads, here a pipe, which a third thread must open for it to end."""
+    code = tmp_path / "drop.py"
+    code.write_text(f"""
+import os, threading, time
+import numpy as np
+import tetwarp
+
+mesh, pipe = tetwarp.lattice_mesh(np.ones((8, 8, 8), np.uint8), cells=1), "{tmp_path}/pipe.nii"
+tetwarp.write("{tmp_path}/mesh.vtkhdf", mesh)
+file = tetwarp.MeshFile("{tmp_path}/mesh.vtkhdf")
+os.mkfifo(pipe)
+
+def read():
+    try:
+        tetwarp.read_header(pipe)
+    except tetwarp.IoError as error:
+        print(error)
+
+def feed():
+    while reader.is_alive():
+        try:
+            os.close(os.open(pipe, os.O_WRONLY | os.O_NONBLOCK))
+            opened.set()
+        except OSError:  # nobody reads it now
+            time.sleep(0.001)
+
+reader, opened = threading.Thread(target=read), threading.Event()
+reader.start()
+threading.Thread(target=feed).start()
+del file
+opened.wait()
+print("dropped")
+""")
+    done = subprocess.run([sys.executable, code], text=True, capture_output=True, timeout=60, check=False)
+    assert done.returncode == 0 and "dropped" in done.stdout, done.stdout + done.stderr

@@ -35,9 +35,9 @@ def test_docstrings_run(test):
 
 #: What has no example of its own: errors, and results that the examples of functions show.
 SHOWN_ELSEWHERE = {
-    "AdhesionStep", "Cancelled", "Certificate", "Collisions", "ContactProblem", "ContactRecords",
-    "ContactSolution", "Contacts", "Csr", "CudaError", "Field", "IoError", "Mesh", "StepRecord",
-    "Surface", "TrackedContacts", "VolumeHeader", "WarpResult",
+    "AdhesionStep", "Cancelled", "Certificate", "Collisions", "ComposedField", "ContactProblem",
+    "ContactRecords", "ContactSolution", "Contacts", "Csr", "CudaError", "Field", "InverseMesh", "IoError",
+    "Mesh", "StepRecord", "Surface", "TrackedContacts", "VolumeHeader", "WarpResult",
 }
 
 

@@ -16,6 +16,7 @@ from ._bridges import (
     volume_from,
 )
 from ._certify import Certificate, Collisions, certify, find_collisions
+from ._compose import ComposedField, InverseMesh, compose, invert
 from ._contact import ContactProblem, ContactSolution, ContactSolver, Csr, solve_contacts
 from ._core import Cancelled, CudaError, IoError
 from ._core import version as __version__
@@ -54,6 +55,7 @@ __all__ = [
     "Cancelled",
     "Certificate",
     "Collisions",
+    "ComposedField",
     "ContactProblem",
     "ContactRecords",
     "ContactSolution",
@@ -64,6 +66,7 @@ __all__ = [
     "CudaError",
     "Field",
     "Grid",
+    "InverseMesh",
     "IoError",
     "Mesh",
     "MeshFile",
@@ -80,9 +83,11 @@ __all__ = [
     "available_backends",
     "boundary_surface",
     "certify",
+    "compose",
     "deform",
     "displacement_field",
     "find_collisions",
+    "invert",
     "isosurface",
     "jacobian_determinant",
     "lattice_mesh",

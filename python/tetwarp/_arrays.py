@@ -40,6 +40,12 @@ def is_torch(value: Any) -> bool:
     return torch is not None and isinstance(value, torch.Tensor)
 
 
+def _is_jax(value: Any) -> bool:
+    """Whether it is an array of JAX, which never changes; DLPack does not tell."""
+    jax = sys.modules.get("jax")
+    return jax is not None and isinstance(value, jax.Array)
+
+
 def check_host(value: Any, name: str, reason: str = "") -> None:
     """Raises ValueError if an array of another library is not in memory of the host."""
     kind, number = value.__dlpack_device__()
@@ -327,6 +333,8 @@ def out_of(value: Any, name: str, shape: Sequence[int], dtype: Any) -> np.ndarra
     shape, dtype = tuple(shape), np.dtype(dtype)
     if is_torch(value) and value.requires_grad:
         raise ValueError(f"{name}: expected a tensor that needs no gradient; use .detach()")
+    if _is_jax(value):
+        raise ValueError(f"{name}: expected an array that may be written to; those of JAX never change")
     if is_foreign(value):
         check_host(value, name)
         try:

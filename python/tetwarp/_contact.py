@@ -37,9 +37,9 @@ class Csr(NamedTuple):
         return f"Csr({self.shape[0]} x {self.shape[1]}, {len(self.data)} entries)"
 
 
-def _is_csr(value: Any) -> bool:
-    """Whether it is a tuple of the members of a Csr, not four rows of numbers. Where each
-    has length two, it is a Csr if the numbers can be one: a single row of two entries.
+def _is_csr(value: Any, name: str) -> bool:
+    """Whether it is a tuple of the members of a Csr, not four rows of numbers. Raises ValueError where
+    it may be both: a single row of two entries, or four rows of two numbers.
     """
     if isinstance(value, Csr):
         return True
@@ -53,9 +53,13 @@ def _is_csr(value: Any) -> bool:
         return len(sizes) > 1
     (rows, columns), (start, end) = value[3], value[2]
     try:
-        return (rows, start, end) == (1, 0, 2) and all(0 <= c < columns for c in value[1])
+        can_be = (rows, start, end) == (1, 0, 2) and all(0 <= c < columns for c in value[1])
     except (TypeError, ValueError):  # no numbers
         return False
+    if can_be:
+        raise ValueError(f"{name}: may be a sparse row of two entries or four rows of two numbers; "
+                         "give tetwarp.Csr(data, indices, indptr, shape) or numpy.array(rows)")
+    return False
 
 
 def csr_of(value: Any, name: str) -> Csr:
@@ -63,7 +67,7 @@ def csr_of(value: Any, name: str) -> Csr:
     if hasattr(value, "tocsr") and not isinstance(value, Csr):
         value = value.tocsr()
         value = Csr(value.data, value.indices, value.indptr, value.shape)
-    if _is_csr(value):
+    if _is_csr(value, name):
         data, indices, indptr, shape = value
     else:
         dense = array_of(value, name)

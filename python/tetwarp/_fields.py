@@ -42,7 +42,7 @@ class Field:
         return f"Field({self.name}, {self.values.shape}, {self.mask.mean():.1%} covered)"
 
 
-def _grid_of(
+def grid_of(
     reference: Any, shape: Any, spacing: Any, origin: Any, direction: Any, affine: Any
 ) -> Grid:
     if reference is not None:
@@ -121,7 +121,7 @@ def displacement_field(
     """
     if convention not in _CONVENTIONS:
         raise ValueError(f"convention: expected resampling or modeling, got {convention!r}")
-    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    grid = grid_of(reference, shape, spacing, origin, direction, affine)
     name = _CONVENTIONS[convention]
     for given in ("outside", "falloff"):
         if given in options and name == "forward":
@@ -152,7 +152,7 @@ def jacobian_determinant(
     >>> jacobian_determinant(*mesh, 0.5 * mesh.points, shape=(8, 8, 8)).values[1, 1, 1]
     np.float32(0.125)
     """
-    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    grid = grid_of(reference, shape, spacing, origin, direction, affine)
     return _field("jacobian", "tetwarp_jacobian", grid, rest, cells, deformed, options)
 
 
@@ -179,7 +179,7 @@ def strain(
     >>> strain(*mesh, 0.5 * mesh.points, shape=(8, 8, 8)).values[1, 1, 1, :3]
     array([-0.375, -0.375, -0.375], dtype=float32)
     """
-    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    grid = grid_of(reference, shape, spacing, origin, direction, affine)
     return _field("strain", "tetwarp_strain", grid, rest, cells, deformed, options)
 
 
@@ -221,7 +221,7 @@ def rasterize(
     >>> round(float(rasterize(tet, [(0, 1, 2, 3)], shape=(4, 4, 4), fractions=True).sum()), 6)
     4.5
     """
-    grid = _grid_of(reference, shape, spacing, origin, direction, affine)
+    grid = grid_of(reference, shape, spacing, origin, direction, affine)
     nodes = nodes_of(points, "points")
     if flag_of(fractions, "fractions"):
         _check_options(options)

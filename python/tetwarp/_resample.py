@@ -16,7 +16,7 @@ from ._volume import Volume, made_volume
 from ._warper import RENAMED
 
 
-def _matrix_of(value: Any, name: str) -> np.ndarray:
+def matrix_of(value: Any, name: str) -> np.ndarray:
     matrix = floats_of(value, name)
     if matrix.shape != (4, 4):
         raise ValueError(f"{name}: expected a Field of displacements, or 4 x 4 numbers, "
@@ -27,13 +27,18 @@ def _matrix_of(value: Any, name: str) -> np.ndarray:
     return matrix
 
 
-def _link_of(value: Any, name: str) -> Any:
+def link_of(value: Any, name: str) -> Any:
     """A transform as the library takes it: a matrix, or a grid and displacements on it."""
     if not isinstance(value, (Field, Volume)):
-        return _matrix_of(value, name)
+        return matrix_of(value, name)
     if value.name == "tetwarp_forward":
         raise ValueError(f'{name}: a field of convention="modeling" leads from the source to the '
-                         'output; use convention="resampling"')
+                         'output; use convention="resampling" or tetwarp.invert(field)')
+    return displacements_of(value, name)
+
+
+def displacements_of(value: Field | Volume, name: str) -> tuple[Any, np.ndarray]:
+    """A field as the library takes it: a grid and displacements on it."""
     samples = value.values if isinstance(value, Field) else value.array
     volume = made_volume(name, samples, value.grid)
     if volume.shape[3:] != (3,):
@@ -46,15 +51,15 @@ def _is_link(value: Any) -> bool:
         return True
     try:
         return np.ndim(value) == 2
-    except ValueError:  # rows of several lengths, which _matrix_of() refuses by name
+    except ValueError:  # rows of several lengths, which matrix_of() refuses by name
         return True
 
 
 def _links_of(transform: Any) -> list[Any]:
     """Transforms one after the other; a list of four rows of numbers is a matrix."""
     if not (isinstance(transform, (list, tuple)) and any(map(_is_link, transform))):
-        return [_link_of(transform, "transform")]
-    return [_link_of(one, f"transform[{number}]") for number, one in enumerate(transform)]
+        return [link_of(transform, "transform")]
+    return [link_of(one, f"transform[{number}]") for number, one in enumerate(transform)]
 
 
 def resample(

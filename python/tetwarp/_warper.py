@@ -44,6 +44,13 @@ def extras_of(outputs: Sequence[str], allowed: dict[str, Any]) -> list[str]:
     return names
 
 
+def _named(error: Exception, positions: Any) -> Exception:
+    """An error of a step in words of the package."""
+    if isinstance(positions, np.ndarray):
+        check_finite(positions, "deformed")
+    return with_remedy(error)
+
+
 class Warper:
     """Warps volumes step by step and keeps memory between the steps.
 
@@ -67,7 +74,8 @@ class Warper:
     label_rule : the label of a voxel is that of most ``"linear"`` weight, of most exact
         ``"volume"`` in its box, or of most ``"gaussian"`` weight, as of sitkLabelGaussian
     label_gaussian : standard deviation [source voxel] and cutoff [standard deviation]
-    default_value : of voxels that no cell covers; integers round it half to even and saturate
+    default_value : of voxels that no cell covers; integers round it half to even and saturate, float32
+        takes the nearest number
     outside : ``"background"``: they get `default_value`; ``"identity"``: the source at the same
         position; ``"nearest"``: the source displaced as the nearest point of the mesh's surface;
         ``"falloff"``: the same with displacements that fall to zero smoothly over `falloff`
@@ -221,7 +229,13 @@ class Warper:
         RuntimeError
             the Warper is closed, or a step of it is running or in flight.
         """
-        return self._result(*self._run(self._open().step, deformed, out, outputs, progress))
+        warper = self._open()
+        positions, given, stream = self._checked(deformed, out, outputs, progress)
+        try:
+            report = warper.step(positions, *given[:2], stream, progress)
+        except (TypeError, ValueError) as error:
+            raise _named(error, positions) from None
+        return self._result(given, report)
 
     step = __call__
 
@@ -254,7 +268,12 @@ class Warper:
         >>> [result.report["step"] for result in results]
         [0, 1, 2, 3]
         """
-        self._run(self._open().begin_step, deformed, out, outputs, progress, is_given=True)
+        warper = self._open()
+        positions, given, stream = self._checked(deformed, out, outputs, progress)
+        try:
+            warper.begin_step(positions, *given[:2], stream, progress, given)
+        except (TypeError, ValueError) as error:
+            raise _named(error, positions) from None
 
     def finish_step(self) -> WarpResult:
         """Ends the oldest step in flight and returns its result.
@@ -295,11 +314,10 @@ class Warper:
             raise RuntimeError("Warper: it is closed")
         return self._warper
 
-    def _run(
-        self, call: Callable[..., Any], deformed: Any, out: Any, outputs: Sequence[str],
-        progress: Progress | None, is_given: bool = False,
-    ) -> tuple[_Arrays, Any]:
-        """The arrays of a step, and what `call` of the library returns for it."""
+    def _checked(
+        self, deformed: Any, out: Any, outputs: Sequence[str], progress: Progress | None
+    ) -> tuple[Any, _Arrays, int]:
+        """The positions, the arrays and the stream of a step."""
         if self._device is not None and on_device(deformed):
             shape = (self._node_count, 3)
             positions = self._device.array_of(deformed, "deformed", shape, "float64")
@@ -312,14 +330,7 @@ class Warper:
         arrays = self._outputs(out)
         extras = {name: self._extra(name) for name in names}
         stream = 0 if self._device is None else self._device.stream
-        given = (arrays, extras, out)
-        try:
-            done = call(positions, arrays, extras, stream, progress, *([given] if is_given else []))
-        except (TypeError, ValueError) as error:
-            if isinstance(positions, np.ndarray):
-                check_finite(positions, "deformed")
-            raise with_remedy(error) from None
-        return given, done
+        return positions, (arrays, extras, out), stream
 
     def _result(self, given: _Arrays, report: _core.StepReport) -> WarpResult:
         arrays, extras, out = given

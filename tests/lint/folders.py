@@ -21,7 +21,7 @@ MODEL = ["host/scene", "host/scene/shapes", "host/scene/checks", "host/base", "h
 STEP = ["host/simulate/model", *MODEL]
 SURFACES = ["host/simulate/step", "host/simulate/step/cpu", "host/collide", *STEP, *COLLIDE]
 SOLVE = ["host/simulate/surfaces", "kernels/contact", *SURFACES]
-CLI = ["io/tetwarp", "io/files", "host/base", "host/warp", *BASE]
+CLI = ["io/tetwarp", "io/files", "host/base", "host/warp", "host/warp/compose", *BASE]
 IO = ["io/tetwarp", "host/base", *BASE]
 ALLOWED = {
     "kernels/base": ["kernels/base/tetwarp"],
@@ -48,6 +48,7 @@ ALLOWED = {
     "host/warp/cpu/rows": ["host/warp", "host/warp/stages", "host/base", *WARP],
     "host/warp/cpu": [
         "host/warp", "host/warp/stages", "host/warp/cpu/rows", "host/base", "host/exec", *WARP],
+    "host/warp/compose": ["host/warp", "host/warp/cpu", "host/base", *WARP],
     "host/warp/cuda": [
         "host/warp", "host/warp/stages", "host/base", "kernels/exec", "kernels/warp/cuda", *WARP],
     "host/reference/linear": [],

@@ -1,13 +1,16 @@
 /// @file test_warp_in_flight.cpp
-/// Steps begun before the last is finished: results and errors equal those of single steps.
+/// Steps begun before the last is finished: results and errors equal those of single steps. Records
+/// of long series.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
 #include "tests/support/each_backend.hpp"
 #include "tests/support/skip_series.hpp"
 #include "tests/support/steps_in_flight.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -107,6 +110,25 @@ TEST_P(InFlight, AWarperMayEndWithStepsInFlight) {
     warper.begin_step(steps[1], b.target(false));
   }
   EXPECT_TRUE(a.bits() == expected[0]);
+}
+
+/// So that memory does not grow with the length of a series; its sums hold all steps.
+TEST(WarpRecords, AreThoseOfTheLastFiveHundredStepsAtLeast) {
+  Mesh mesh;
+  mesh.rest_positions = {{-1, -1, -1}, {5, -1, -1}, {-1, 5, -1}, {-1, -1, 5}};
+  mesh.tets = {{0, 1, 2, 3}};
+  const Volume voxel = make_volume(scenes::unit_grid(1, 1, 1), PixelType::uint8);
+  Warper warper(voxel, mesh, {.backend = Backend::cpu, .threads = 1});
+
+  for (std::int64_t step = 0; step < 1001; ++step) {
+    run_step(warper, voxel, mesh.rest_positions);
+
+    const Report& report = warper.report();
+    ASSERT_EQ(report.steps.back().step, step);
+    ASSERT_EQ(report.steps.front().step, step < 1000 ? 0 : 500);
+    ASSERT_EQ(std::ssize(report.steps), step + 1 - report.steps.front().step);
+    ASSERT_EQ(report.counts.covered, step + 1);
+  }
 }
 }  // namespace
 }  // namespace tetwarp::test

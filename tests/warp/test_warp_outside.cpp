@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "host/warp/outside_surface.hpp"
+#include "kernels/warp/surface_near.hpp"
 #include "kernels/warp/surface_tree.hpp"
 #include "tests/support/each_backend.hpp"
 #include "tests/support/hex_scenes.hpp"
@@ -209,42 +211,117 @@ TEST(WarpOutsideCpu, RegionsThreadsAndStepsBeforeDoNotChangeBits) {
   }
 }
 
-/// Soups of triangles of every size around the leaves of a tree, searched from anywhere.
-TEST(SurfaceTree, FindsTheNearestOfAllTriangles) {
-  for (const int count : {1, 2, 4, 5, 31, 32, 33, 1025}) {
-    std::vector<SurfaceNode> nodes(static_cast<std::size_t>(3 * count));
-    std::vector<std::int32_t> triangles;
+enum class Triangles { apart, joined, thin };
+
+/// Triangles within a cube with an edge of 10 or a little beyond it, in a tree.
+struct Soup {
+  std::vector<SurfaceNode> nodes;
+  std::vector<std::int32_t> triangles;
+  std::vector<SurfaceBox> boxes;
+
+  /// Apart of each other, in strips that share nodes and cross, or with corners on a line.
+  Soup(Triangles kind, int count) : nodes(static_cast<std::size_t>(3 * count)) {
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      triangles.push_back(static_cast<std::int32_t>(n));
+      const std::size_t corner = n % 3;
+      const bool is_joined = kind == Triangles::joined;
+      triangles.push_back(static_cast<std::int32_t>(is_joined ? n / 3 % 40 + corner : n));
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto at = static_cast<std::uint64_t>(3 * (n / 3) + axis);
         const auto own = static_cast<std::uint64_t>(3 * n + axis);
         nodes[n].at[axis] = 10 * scenes::uniform(1, at) + scenes::uniform(2, own);
         nodes[n].to_rest[axis] = scenes::uniform(3, own);
       }
+      if (kind != Triangles::thin || corner != 2) continue;
+      const double share = n % 2 == 0 ? 0.3 : 1, off = n % 4 == 0 ? 0 : 1e-6;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double from = nodes[n - 2].at[axis], to = nodes[n - 1].at[axis];
+        nodes[n].at[axis] = from + share * (to - from) + off * (axis == 0);
+      }
     }
     std::int64_t leaves = 1;
     while (4 * leaves < count) leaves *= 2;
-    std::vector<SurfaceBox> boxes(static_cast<std::size_t>(2 * leaves));
-    const SurfaceTree tree{{nodes.data(), std::ssize(nodes)},
-                           {triangles.data(), std::ssize(triangles)},
-                           {boxes.data(), std::ssize(boxes)}};
+    boxes.resize(static_cast<std::size_t>(2 * leaves));
     for (std::int64_t first = leaves; first > 0; first /= 2) {
-      const SurfaceBoxOp body{tree, {boxes.data(), std::ssize(boxes)}, first};
+      const SurfaceBoxOp body{tree(), {boxes.data(), std::ssize(boxes)}, first};
       for (std::int64_t n = 0; n < first; ++n) body(n);
     }
-    for (std::uint64_t p = 0; p < 50; ++p) {
-      const double x[3] = {14 * scenes::uniform(4, 3 * p) - 2, 14 * scenes::uniform(4, 3 * p + 1),
-                           14 * scenes::uniform(4, 3 * p + 2)};
-      NearestSurfacePoint every{std::numeric_limits<double>::infinity(), -1, {}}, found = every;
-      for (std::int64_t t = 0; t < count; ++t) take_triangle(tree, t, x, every);
-      find_nearest(tree, x, found);
+  }
 
-      EXPECT_EQ(found.triangle, every.triangle);
-      EXPECT_EQ(found.distance2, every.distance2);
-      EXPECT_EQ(found.to_rest[1], every.to_rest[1]);
+  SurfaceTree tree() const {
+    return {{nodes.data(), std::ssize(nodes)},
+            {triangles.data(), std::ssize(triangles)},
+            {boxes.data(), std::ssize(boxes)}};
+  }
+};
+
+/// A point of the cube from -2 to 12.
+std::array<double, 3> place(std::uint64_t seed, std::uint64_t number) {
+  std::array<double, 3> at{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    at[axis] = 14 * scenes::uniform(seed, 3 * number + axis) - 2;
+  }
+  return at;
+}
+
+void expect_same(const NearestSurfacePoint& one, const NearestSurfacePoint& other) {
+  EXPECT_EQ(one.triangle, other.triangle);
+  EXPECT_EQ(one.distance2, other.distance2);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(one.to_rest[axis], other.to_rest[axis]);
+}
+
+constexpr double everywhere = std::numeric_limits<double>::infinity();
+
+/// Soups of every size around the leaves of a tree, searched from anywhere.
+TEST(SurfaceTree, FindsTheNearestOfAllTriangles) {
+  for (const int count : {1, 2, 4, 5, 31, 32, 33, 1025}) {
+    const Soup soup(Triangles::apart, count);
+    const SurfaceTree tree = soup.tree();
+    for (std::uint64_t p = 0; p < 50; ++p) {
+      const auto x = place(4, p);
+      NearestSurfacePoint every{everywhere, -1, {}}, found = every;
+      for (std::int64_t t = 0; t < count; ++t) take_triangle(tree, t, x.data(), every);
+      find_nearest(tree, x.data(), found);
+
+      expect_same(found, every);
     }
   }
+}
+
+/// Rows through balls of any size, near and far, also where more triangles are near than are kept.
+TEST(SurfaceNear, HasTheBitsOfTheTreeForAllPositionsOfABall) {
+  constexpr double half = 0.5 * (SurfaceNear::lanes - 1);
+  std::int64_t far = 0, found = 0;
+  for (const Triangles kind : {Triangles::apart, Triangles::joined, Triangles::thin}) {
+    for (const int count : {1, 5, 33, 1025}) {
+      const Soup soup(kind, count);
+      const SurfaceTree tree = soup.tree();
+      for (std::uint64_t p = 0; p < 60; ++p) {
+        const auto center = place(5, p), toward = place(6, p);
+        const double radius = p % 6 == 0 ? 0 : std::pow(10, 3 * scenes::uniform(7, p) - 2);
+        const double reach = p % 2 == 0 ? everywhere : 1.5;
+        const double length = std::hypot(toward[0], toward[1], toward[2]);
+        std::array<double, 3> first{}, step{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          step[axis] = radius / half * toward[axis] / length;
+          first[axis] = center[axis] - half * step[axis];
+        }
+        SurfaceNear near(tree, center.data(), radius, reach);
+        if (!near.is_far()) near.begin_row(first.data(), step.data());
+        for (int lane = 0; lane < SurfaceNear::lanes; ++lane) {
+          std::array<double, 3> x = first;
+          for (std::size_t axis = 0; axis < 3; ++axis) x[axis] += lane * step[axis];
+          NearestSurfacePoint plain{reach * reach, -1, {}}, mine = plain;
+          find_nearest(tree, x.data(), plain);
+          if (!near.is_far()) near.find(lane, x.data(), mine);
+
+          expect_same(mine, plain);
+          ++(near.is_far() ? far : found);
+        }
+      }
+    }
+  }
+  EXPECT_GT(far, 100);
+  EXPECT_GT(found, 1500);
 }
 
 TEST(OutsideSurface, HoldsTheTrianglesOfOneTetrahedronAlone) {

@@ -142,14 +142,14 @@ int run_compose(const ComposeArguments& arguments) {
   check_compress(names, arguments.compress);
   const InterruptFlag flag;
   for (std::size_t s = 0; s < steps.size(); ++s) {
-    ChainNotes notes;
     for (ChainLink& link : links) link.choose(steps[s]);
-    const std::vector<float> field = displacements_of(links, grid, arguments.threads, notes);
+    std::vector<float> field(3 * static_cast<std::size_t>(grid.voxel_count()));
+    const ComposeNotes notes = composed(links, grid, arguments.threads, field);
     OutputWriter writer(names[s], grid, {array}, {.compress = arguments.compress}, false, 1,
                         ChunkShape::rows);
     writer.write(0, {{0, 0, 0}, grid.dims}, field.data());
     writer.finish();
-    for (const std::string& line : notes.lines(grid.voxel_count())) {
+    for (const std::string& line : lines_of(notes, grid.voxel_count())) {
       fmt::print(stderr, "tetwarp: {}: {}\n", names[s], line);
     }
     if (has_nifti_name(names[s]) && itk_components(grid) == 2) {

@@ -5,30 +5,16 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <tetwarp/io.hpp>
-#include <tetwarp/resample.hpp>
 #include <tetwarp/transform_file.hpp>
 
-#include "host/cli/warp/field_inverse.hpp"
+#include "host/warp/compose/compose.hpp"
 
 namespace tetwarp::cli {
 
-/// What points met on their way.
-struct ChainNotes {
-  std::int64_t outside = 0;       ///< of a mesh: they kept their place there
-  std::int64_t straightened = 0;  ///< of a mesh: moved by straight tetrahedra, see CurvedMesh
-  std::int64_t not_inverted = 0;  ///< of a field: no position is taken there; kept their place
-  double largest_residual = 0;    ///< of those found [world]
-
-  /// A line about each, of positions that kept their place or have another one than meant.
-  /// @param count  of all positions
-  std::vector<std::string> lines(std::int64_t count) const;
-};
-
-/// One transform from positions of the output to positions in the source.
+/// One transform of a file from positions of the output to positions in the source.
 class ChainLink {
  public:
   /// @param word   path of the file; with "^-1" behind it the inverse
@@ -48,38 +34,36 @@ class ChainLink {
   std::int64_t step_count() const;                                 ///< 1 but for meshes and fields
   bool iterates() const;  ///< it has the inverse of a field or a spline, see FieldInverse
 
-  /// Chooses the step that is applied, and reads it; of a file with a single step that one.
+  /// Chooses the step that is applied, and reads the positions of a mesh; a file with a single step
+  /// keeps that.
   void choose(std::int64_t step);
+  /// Those of the chosen step, in the order in which positions of the output meet them.
   /// @pre choose() has been called
-  void apply(int threads, std::vector<Point3>& points, ChainNotes& notes);
+  const std::vector<ComposeLink>& parts() const { return parts_; }
 
  private:
-  using Part = std::variant<Transform, FieldInverse>;  ///< one transform, no chain
-
   void read_transforms();
-  Part part_of(Transform transform, bool is_inverse) const;
 
   std::string path_;
   bool is_inverse_;
   TransformReadOptions options_;  ///< with the chosen step, also of a mesh
   std::int64_t field_steps_ = 1;
   std::optional<MeshReader> mesh_;
-  std::vector<Point3> deformed_;  ///< nodes of the mesh in the chosen step
-  std::vector<Part> parts_;       ///< in the order of application
+  std::vector<ComposeLink> parts_;  ///< affine transforms are inverted
 };
 
-/// Where links take the voxels of a grid, the last one first, less where they are.
-/// @param links  the first one is the last transform of a position, as the first one of an image
-/// @returns [k][j][i][3] [world]
-std::vector<float> displacements_of(std::span<ChainLink> links,
-                                    const Grid& grid,
-                                    int threads,
-                                    ChainNotes& notes);
+/// What the chosen step met on its way.
+/// @param links          in the order in which they are applied to an image, which is the reverse
+///                       of that for positions of the output
+/// @param threads        0: all cores
+/// @param displacements  out, of the voxels of the grid, see compose_into()
+ComposeNotes composed(std::span<const ChainLink> links,
+                      const Grid& grid,
+                      int threads,
+                      std::span<float> displacements);
 
-/// Memory that displacements_of() a grid take with the result [byte].
-double displacement_memory(const Grid& grid);
-
-/// The inverse. Throws std::invalid_argument when the matrix is singular.
-AffineTransform inverse_of(const AffineTransform& affine);
+/// A line about each kind of positions that kept their place or have another one than meant.
+/// @param count  of all positions
+std::vector<std::string> lines_of(const ComposeNotes& notes, std::int64_t count);
 
 }  // namespace tetwarp::cli

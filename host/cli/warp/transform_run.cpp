@@ -118,7 +118,7 @@ void TransformRun::plan_memory() {
     displacements +=
         parts_.fields[n].voxel_bytes * static_cast<double>(fields[n]->grid.voxel_count());
   }
-  if (inverts()) displacements += displacement_memory(plan_.output_grid);
+  if (inverts()) displacements += compose_memory(plan_.output_grid);
   fixed_bytes_ = fixed_memory(plan_, arguments_, MeshHeader{});
   plan_.memory = fixed_bytes_ + samples + displacements;
   set_memory_limit(plan_, arguments_);
@@ -216,9 +216,11 @@ void TransformRun::plan(JobResult& result) {
 void TransformRun::invert() {
   ChainLink link(arguments_.files.back(), MeshReadOptions{}, read_.axes, read_.world);
   link.choose(read_.step.value_or(0));
-  parts_.file.transform = DisplacementField{
-      plan_.output_grid,
-      displacements_of({&link, 1}, plan_.output_grid, arguments_.warp.threads, notes_)};
+  const Grid& grid = plan_.output_grid;
+  DisplacementField field{grid,
+                          std::vector<float>(3 * static_cast<std::size_t>(grid.voxel_count()))};
+  notes_ = composed({&link, 1}, grid, arguments_.warp.threads, field.displacement);
+  parts_.file.transform = std::move(field);
 }
 
 void TransformRun::read_fields() {
@@ -297,7 +299,7 @@ void TransformRun::run(const JobContext& context, JobResult& result) {
   ProgressBar bar(context.shows_progress, context.label, source_.steps.size());
   if (inverts()) {
     invert();
-    add_notes(notes_.lines(plan_.output_grid.voxel_count()), context, result);
+    add_notes(lines_of(notes_, plan_.output_grid.voxel_count()), context, result);
   } else if (is_whole()) {
     read_fields();
   }

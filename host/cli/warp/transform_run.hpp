@@ -75,7 +75,7 @@ class TransformRun {
   TransformParts parts_;
   ResampleOptions options_;
   VolumePlan plan_;
-  ChainNotes notes_;        ///< of an inverse
+  ComposeNotes notes_;      ///< of an inverse
   double fixed_bytes_ = 0;  ///< memory of the process beside samples and displacements
 };
 

@@ -77,7 +77,7 @@ class WarpExtension {
   /// @param displacement  in the memory of the executor; null: not written
   template <class T>
   void write(const RasterJob<T>& job, View<const std::int32_t> owners, float* displacement) {
-    voxel_extend(exec_, VoxelExtendOp<T>{job, owners, extension_, displacement, 1});
+    voxel_extend(exec_, VoxelExtendOp<T>{job, owners, extension_, displacement});
   }
 
  private:

@@ -1,11 +1,11 @@
 /// @file position_bins.cpp
 /// Bins of positions, about one for each at most.
-#include "host/cli/warp/position_bins.hpp"
+#include "host/warp/compose/position_bins.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tetwarp::cli {
+namespace tetwarp {
 
 PositionBins::PositionBins(const std::vector<Point3>& points, double size)
     : points_(points), bounds_(bounds_of(points)) {
@@ -36,4 +36,4 @@ PositionBins::Bin PositionBins::bin_of(const Point3& x) const {
   return bin;
 }
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp

@@ -1,6 +1,6 @@
 /// @file image_cells.cpp
 /// Boxes around the images of cells: corners of a linear cell, coefficients around one of a spline.
-#include "host/cli/warp/image_cells.hpp"
+#include "host/warp/compose/image_cells.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 #include "host/base/parallel.hpp"
 
-namespace tetwarp::cli {
+namespace tetwarp {
 namespace {
 /// The displacement of a node, or of the nearest one.
 template <class Number>
@@ -87,4 +87,4 @@ void ImageCells::widen(const Cell& cell, Bounds& image) const {
   image.high = plus(image.high, range.high);
 }
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp

@@ -1,7 +1,7 @@
 /// @file field_inverse.cpp
 /// Damped Newton steps of many points at once, from the points and from cells that may be taken to
 /// them.
-#include "host/cli/warp/field_inverse.hpp"
+#include "host/warp/compose/field_inverse.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,15 +9,16 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <variant>
 
 #include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
-#include "host/cli/warp/image_cells.hpp"
-#include "host/cli/warp/position_bins.hpp"
+#include "host/warp/compose/image_cells.hpp"
+#include "host/warp/compose/position_bins.hpp"
 
-namespace tetwarp::cli {
+namespace tetwarp {
 namespace {
 constexpr int most_steps = 50;
 constexpr int most_halvings = 10;
@@ -120,7 +121,7 @@ class PointsInverse {
   /// Makes Newton steps. A search ends when its residual is small enough, or a step does not reduce
   /// it.
   void run() {
-    if (progress_) progress_();
+    progress_();
     evaluate(searches_);
     for (int n = 0; !searches_.empty(); ++n) {
       keep_found();
@@ -230,7 +231,7 @@ class Searches {
   }
 
   bool are_done() const { return left_.empty(); }
-  InverseCounts counts() const { return {std::ssize(left_), largest_residual_}; }
+  InverseResult result() && { return {std::move(left_), largest_residual_}; }
 
   /// Calls search(PointsInverse&) for all points without an x.
   template <class Method>
@@ -274,20 +275,21 @@ class Searches {
 };
 }  // namespace
 
-FieldInverse::FieldInverse(Transform field)
-    : field_(std::make_unique<const Transform>(std::move(field))) {}
-
-InverseCounts FieldInverse::apply(std::vector<Point3>& points,
+InverseResult FieldInverse::apply(std::vector<Point3>& points,
                                   int threads,
                                   const std::function<void()>& progress) {
   threads = thread_count(threads);
-  Searches searches(*field_, points, threads, progress);
+  const std::thread::id caller = std::this_thread::get_id();
+  const std::function<void()> check = [&] {
+    if (progress && std::this_thread::get_id() == caller) progress();
+  };
+  Searches searches(field_, points, threads, check);
   searches.run([](PointsInverse& inverse) { inverse.search_near(); });
   if (!searches.are_done()) {
-    if (cells_ == nullptr) cells_ = std::make_unique<const ImageCells>(*field_, threads);
+    if (cells_ == nullptr) cells_ = std::make_unique<const ImageCells>(field_, threads);
     searches.run([&](PointsInverse& inverse) { inverse.search_cells(*cells_); });
   }
-  return searches.counts();
+  return std::move(searches).result();
 }
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp

@@ -8,7 +8,7 @@
 
 #include "host/base/point3.hpp"
 
-namespace tetwarp::cli {
+namespace tetwarp {
 
 /// Positions sorted into equal bins along the axes.
 class PositionBins {
@@ -53,4 +53,4 @@ class PositionBins {
   std::vector<std::vector<std::size_t>> bins_;
 };
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp

@@ -11,7 +11,7 @@
 
 #include "host/base/point3.hpp"
 
-namespace tetwarp::cli {
+namespace tetwarp {
 
 /// The cells between the nodes of a field or a spline, each with a box around all positions to
 /// which it is taken. Bricks of 8 x 8 x 8 cells have boxes, too, so that cells near a position are
@@ -74,4 +74,4 @@ class ImageCells {
   std::vector<Bounds> bricks_;
 };
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp
