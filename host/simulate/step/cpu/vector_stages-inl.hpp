@@ -3,6 +3,9 @@
 ///
 /// All functions here are inlined or templates on the width of vectors, which differs between the
 /// files: no code for one instruction set can be linked into another's.
+///
+/// Vectors are loaded and stored one by one: compilers copy an array of them in halves through
+/// memory, and the load of a whole one then waits for both stores.
 #pragma once
 #include <cstdint>
 
@@ -193,7 +196,7 @@ void add_blocks_of(const float* rows,
                    float* block) {
   typedef float Eight __attribute__((vector_size(32)));
   Eight sum[3];
-  __builtin_memcpy(sum, block, sizeof(sum));
+  for (int a = 0; a < 3; ++a) __builtin_memcpy(&sum[a], block + 8 * a, sizeof(Eight));
   for (std::int64_t p = 0; p < parts; ++p, rows += 9) {
     for (int i = 0; i < 3; ++i) {
       Eight column;
@@ -201,7 +204,7 @@ void add_blocks_of(const float* rows,
       for (int a = 0; a < 3; ++a) sum[a] += column * rows[3 * a + i];
     }
   }
-  __builtin_memcpy(block, sum, sizeof(sum));
+  for (int a = 0; a < 3; ++a) __builtin_memcpy(block + 8 * a, &sum[a], sizeof(Eight));
 }
 
 template <int width>
@@ -250,6 +253,49 @@ void substitute_of(const BlockFactor& l, double* w) {
   }
 }
 
+/// The numbers of each vector are those that BlockLu::solve() computes.
+template <int width>
+void substitute_four_of(const BlockPairFactor& lu, double* w) {
+  typedef double Four __attribute__((vector_size(32)));
+  const auto load = [w](std::int64_t row, int i) {
+    Four four;
+    __builtin_memcpy(&four, w + 12 * row + 4 * i, sizeof(four));
+    return four;
+  };
+  const auto store = [w](std::int64_t row, int i, const Four& four) {
+    __builtin_memcpy(w + 12 * row + 4 * i, &four, sizeof(four));
+  };
+  const std::int64_t count = lu.start.size - 1;
+  for (std::int64_t j = 0; j < count; ++j) {
+    bool is_zero = true;  // as in most columns of sparse vectors
+    for (int i = 0; i < 12; ++i) is_zero = is_zero && w[12 * j + i] == 0;
+    if (is_zero) continue;
+    const Four x = load(j, 0), y = load(j, 1), z = load(j, 2);
+    for (std::int64_t e = lu.start[j] + 1; e < lu.start[j + 1]; ++e) {
+      const double* const l = lu.lower + 12 * e;
+      const std::int64_t row = lu.row[e];
+      for (int i = 0; i < 3; ++i) {
+        store(row, i, load(row, i) - (x * l[i] + y * l[4 + i] + z * l[8 + i]));
+      }
+    }
+  }
+  for (std::int64_t j = count; j-- > 0;) {
+    Four a = load(j, 0), b = load(j, 1), c = load(j, 2);
+    for (std::int64_t e = lu.start[j] + 1; e < lu.start[j + 1]; ++e) {
+      const double* const u = lu.upper + 12 * e;
+      const std::int64_t row = lu.row[e];
+      const Four x = load(row, 0), y = load(row, 1), z = load(row, 2);
+      a -= x * u[0] + y * u[1] + z * u[2];
+      b -= x * u[4] + y * u[5] + z * u[6];
+      c -= x * u[8] + y * u[9] + z * u[10];
+    }
+    const double* const inverse = lu.inverse + 9 * j;
+    for (int i = 0; i < 3; ++i) {
+      store(j, i, a * inverse[3 * i] + b * inverse[3 * i + 1] + c * inverse[3 * i + 2]);
+    }
+  }
+}
+
 template <int width>
 void subtract_products_of(const double* blocks,
                           const std::int32_t* rows,
@@ -261,7 +307,7 @@ void subtract_products_of(const double* blocks,
   for (std::int64_t e = 0; e < count; ++e, blocks += 12) {
     double* const own = out + 12 * std::int64_t{slot[rows[e]]};
     Four column[3];
-    __builtin_memcpy(column, blocks, sizeof(column));
+    for (int c = 0; c < 3; ++c) __builtin_memcpy(&column[c], blocks + 4 * c, sizeof(Four));
     for (int c = 0; c < 3; ++c) {
       Four sum;
       __builtin_memcpy(&sum, own + 4 * c, sizeof(sum));
@@ -283,6 +329,7 @@ constexpr VectorStages vector_stages_of(const char* name) {
           add_rows_float_of<width>,
           add_blocks_of<width>,
           substitute_of<width>,
+          substitute_four_of<width>,
           subtract_products_of<width>};
 }
 
