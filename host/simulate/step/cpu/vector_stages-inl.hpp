@@ -7,12 +7,21 @@
 /// Vectors are loaded and stored one by one: compilers copy an array of them in halves through
 /// memory, and the load of a whole one then waits for both stores.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "host/simulate/step/cpu/lanes.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"
 
 namespace tetwarp {
+
+/// The numbers of a vector in float64. They are listed, as g++ converts what
+/// __builtin_convertvector() takes in halves.
+template <int width, class Numbers, class Floats, std::size_t... k>
+inline Numbers doubled(const Floats& floats, std::index_sequence<k...>) {
+  return Numbers{floats[k]...};
+}
 
 /// R of count <= width lanes.
 template <int width>
@@ -166,7 +175,7 @@ void add_rows_of(
     for (int a = 0; a < 3; ++a) {
       Floats row;
       __builtin_memcpy(&row, rows + a * stride + k, sizeof(row));
-      own += __builtin_convertvector(row, Numbers) * change[a];
+      own += doubled<width, Numbers>(row, std::make_index_sequence<width>()) * change[a];
     }
     __builtin_memcpy(sum + k, &own, sizeof(own));
   }
@@ -215,7 +224,7 @@ void substitute_of(const BlockFactor& l, double* w) {
     for (int i = 0; i < 3; ++i) {
       FourFloats column;
       __builtin_memcpy(&column, l.block.data + 9 * entry + 3 * i, sizeof(column));
-      columns[i] = __builtin_convertvector(column, Four);
+      columns[i] = doubled<width, Four>(column, std::make_index_sequence<4>());
     }
   };
   const std::int64_t count = l.start.size - 1;
