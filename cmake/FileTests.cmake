@@ -173,12 +173,19 @@ set(tetwarp_link_tests "")
 if(TETWARP_HAS_SCREENS)
   set(tetwarp_link_tests tests/view/test_screen_link.cpp)
 endif()
-set(tetwarp_gamepad_tests "")
+set(tetwarp_input_tests "")
+set(tetwarp_input_libraries "")
 if(TETWARP_HAS_VIEW AND TARGET SDL2::SDL2)
-  set(tetwarp_gamepad_tests tests/view/test_gamepad.cpp)
+  list(APPEND tetwarp_input_tests tests/view/test_gamepad.cpp)
+  list(APPEND tetwarp_input_libraries tetwarp_view_devices SDL2::SDL2)
+endif()
+if(TETWARP_HAS_VIEW AND TETWARP_SPNAV_INCLUDE AND TETWARP_SPNAV_LIBRARY)
+  list(APPEND tetwarp_input_tests tests/view/test_space_mouse.cpp)
+  list(APPEND tetwarp_input_libraries tetwarp_view_devices)
 endif()
 tetwarp_add_cli_tests(tetwarp_view_tests
-  ${tetwarp_link_tests} ${tetwarp_gamepad_tests}
+  ${tetwarp_link_tests} ${tetwarp_input_tests}
+  tests/view/test_device_hand.cpp
   tests/view/test_live_simulation.cpp
   tests/view/test_look_surfaces.cpp
   tests/view/test_screen_messages.cpp
@@ -187,14 +194,24 @@ tetwarp_add_cli_tests(tetwarp_view_tests
   tests/view/test_view_devices.cpp
   tests/view/test_view_keys.cpp
   tests/view/test_view_parts.cpp)
-target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_parts)
-if(tetwarp_gamepad_tests)
-  target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_devices SDL2::SDL2)
-endif()
+target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_parts ${tetwarp_input_libraries})
 if(TETWARP_HAS_SCREENS)
   target_link_libraries(tetwarp_view_tests PRIVATE tetwarp_view_link)
 endif()
 tetwarp_discover(tetwarp_view_tests unit)
+find_library(TETWARP_VRPN_SERVER_LIBRARY vrpnserver)
+if(TETWARP_HAS_VRPN AND TETWARP_VRPN_SERVER_LIBRARY)
+  add_executable(tetwarp_tracking_server tests/view/tracking_server.cpp)
+  target_include_directories(tetwarp_tracking_server SYSTEM PRIVATE ${TETWARP_VRPN_INCLUDE})
+  target_link_libraries(tetwarp_tracking_server PRIVATE
+    ${TETWARP_VRPN_SERVER_LIBRARY} ${TETWARP_QUAT_LIBRARY} Threads::Threads tetwarp_options)
+  tetwarp_add_tests(tetwarp_tracked_tests
+    LIBRARIES tetwarp_view_devices SOURCES tests/view/test_tracked_device.cpp)
+  target_compile_definitions(tetwarp_tracked_tests PRIVATE
+    TETWARP_TRACKING_SERVER="$<TARGET_FILE:tetwarp_tracking_server>")
+  add_dependencies(tetwarp_tracked_tests tetwarp_tracking_server)
+  tetwarp_discover(tetwarp_tracked_tests unit)
+endif()
 if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
   add_test(NAME window COMMAND ${TETWARP_PYTHON3} -B
     ${PROJECT_SOURCE_DIR}/tests/view/check_window.py $<TARGET_FILE:tetwarp_command>)
@@ -203,6 +220,12 @@ if(TETWARP_PYTHON3 AND TETWARP_HAS_VIEW)
   # One at a time: displays in several namespaces may get the same number.
   set_tests_properties(window window_keys PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
     RESOURCE_LOCK display)
+  if(TARGET tetwarp_tracking_server)
+    add_test(NAME window_wand COMMAND ${TETWARP_PYTHON3} -B ${PROJECT_SOURCE_DIR}/tests/view/check_wand.py
+      $<TARGET_FILE:tetwarp_command> $<TARGET_FILE:tetwarp_tracking_server>)
+    set_tests_properties(window_wand PROPERTIES LABELS cli SKIP_RETURN_CODE 77 TIMEOUT 300
+      RESOURCE_LOCK display)
+  endif()
   if(TETWARP_HAS_SCREENS)
     add_test(NAME screens COMMAND ${TETWARP_PYTHON3} -B
       ${PROJECT_SOURCE_DIR}/tests/view/check_screens.py $<TARGET_FILE:tetwarp_command>)

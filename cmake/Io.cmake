@@ -17,8 +17,8 @@ tetwarp_sources(tetwarp_io io/fclib
   contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_left_out.cpp fclib_matrix.cpp
   fclib_numbers.cpp fclib_rows.cpp fclib_write.cpp)
 tetwarp_sources(tetwarp_io io/files
-  extension.cpp finished_file.cpp leftover_files.cpp memory.cpp names.cpp numbered_files.cpp
-  read_check.cpp scratch_file.cpp sha256.cpp sink_checks.cpp text_file.cpp)
+  extension.cpp finished_file.cpp input_check.cpp leftover_files.cpp memory.cpp names.cpp
+  numbered_files.cpp read_check.cpp scratch_file.cpp sha256.cpp sink_checks.cpp text_file.cpp)
 tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_output.cpp h5_read.cpp h5_rows.cpp h5_write.cpp
   value_names.cpp)

@@ -2,11 +2,13 @@
 # left out where this is missing. `tetwarp view` then names the package.
 add_library(tetwarp_view_parts STATIC)
 tetwarp_sources(tetwarp_view_parts host/view
-  body_carrier.cpp camera_keys.cpp curve_editor.cpp finger_pair.cpp input_delay.cpp input_log.cpp
-  live_simulation.cpp live_start.cpp live_volumes.cpp overlay_text.cpp pick.cpp ray_quality.cpp
-  view_options.cpp view_scene.cpp view_tools.cpp volume_colors.cpp)
+  body_carrier.cpp camera_keys.cpp curve_editor.cpp finger_pair.cpp grab_handle.cpp input_delay.cpp
+  input_log.cpp live_simulation.cpp live_start.cpp live_volumes.cpp overlay_text.cpp pick.cpp
+  ray_quality.cpp view_options.cpp view_scene.cpp view_tools.cpp volume_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/devices
   input_device.cpp simulated_device.cpp)
+tetwarp_sources(tetwarp_view_parts host/view/hand
+  device_hand.cpp room_place.cpp scene_hand.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/look
   look_surfaces.cpp obstacle_surface.cpp scene_look.cpp slice_look.cpp surface_values.cpp
   value_colors.cpp)
@@ -86,7 +88,7 @@ if(TETWARP_HAS_SCREENS)
   target_link_libraries(tetwarp_view_link
     PUBLIC tetwarp_view_parts ${TETWARP_ZMQ_LIBRARY} PRIVATE EXPAT::EXPAT tetwarp_options)
   target_compile_options(tetwarp_view_link PRIVATE $<$<CONFIG:Release>:-O1>)
-  set(tetwarp_screen_sources screen_window.cpp screens_zmq.cpp)
+  set(tetwarp_screen_sources head_sender.cpp screen_window.cpp screens_zmq.cpp)
 else()
   set(tetwarp_screen_sources screens_nozmq.cpp)
 endif()
@@ -96,7 +98,10 @@ add_library(tetwarp_view_devices STATIC)
 find_package(SDL2 QUIET)
 find_path(TETWARP_SPNAV_INCLUDE spnav.h)
 find_library(TETWARP_SPNAV_LIBRARY spnav)
-set(tetwarp_device_sources gamepad_nosdl.cpp space_mouse_nospnav.cpp)
+find_path(TETWARP_VRPN_INCLUDE vrpn_Tracker.h)
+find_library(TETWARP_VRPN_LIBRARY vrpn)
+find_library(TETWARP_QUAT_LIBRARY quat)  # a part of VRPN
+set(tetwarp_device_sources gamepad_nosdl.cpp space_mouse_nospnav.cpp tracked_device_novrpn.cpp)
 if(TARGET SDL2::SDL2)  # some packages have none
   list(TRANSFORM tetwarp_device_sources REPLACE "nosdl" "sdl")
   target_link_libraries(tetwarp_view_devices PRIVATE SDL2::SDL2)
@@ -106,14 +111,26 @@ if(TETWARP_SPNAV_INCLUDE AND TETWARP_SPNAV_LIBRARY)
   target_include_directories(tetwarp_view_devices SYSTEM PRIVATE ${TETWARP_SPNAV_INCLUDE})
   target_link_libraries(tetwarp_view_devices PRIVATE ${TETWARP_SPNAV_LIBRARY} ${X11_LIBRARIES})
 endif()
-tetwarp_sources(tetwarp_view_devices host/view/devices ${tetwarp_device_sources})
+set(TETWARP_HAS_VRPN FALSE)
+if(TETWARP_VRPN_INCLUDE AND TETWARP_VRPN_LIBRARY AND TETWARP_QUAT_LIBRARY)
+  set(TETWARP_HAS_VRPN TRUE)
+  list(TRANSFORM tetwarp_device_sources REPLACE "novrpn" "vrpn")
+  add_library(tetwarp_vrpn INTERFACE)
+  target_include_directories(tetwarp_vrpn SYSTEM INTERFACE ${TETWARP_VRPN_INCLUDE})
+  target_compile_definitions(tetwarp_vrpn INTERFACE VRPN_CLIENT_ONLY)
+  target_link_libraries(tetwarp_vrpn INTERFACE
+    ${TETWARP_VRPN_LIBRARY} ${TETWARP_QUAT_LIBRARY} Threads::Threads)
+  target_link_libraries(tetwarp_view_devices PRIVATE tetwarp_vrpn)
+endif()
+tetwarp_sources(tetwarp_view_devices host/view/devices open_devices.cpp ${tetwarp_device_sources})
 target_link_libraries(tetwarp_view_devices PUBLIC tetwarp_view_parts PRIVATE tetwarp_options)
 target_compile_options(tetwarp_view_devices PRIVATE $<$<CONFIG:Release>:-O1>)
 message(STATUS "tetwarp: devices of tetwarp view: ${tetwarp_device_sources}")
 
 add_executable(tetwarp_view)
 tetwarp_sources(tetwarp_view host/view/window
-  curve_panel.cpp cut_plane.cpp device_hand.cpp mouse_style.cpp pointer.cpp scene_actors.cpp
+  curve_panel.cpp cut_plane.cpp full_screen.cpp mouse_style.cpp picture_meter.cpp pointer.cpp
+  scene_actors.cpp
   ${tetwarp_screen_sources} surface_actor.cpp value_legend.cpp view_window.cpp volume_actors.cpp
   window_camera.cpp window_film.cpp window_picture.cpp window_texts.cpp
   ALONE main.cpp)

@@ -10,7 +10,7 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/view/input_delay.hpp"
-#include "host/view/look/surface_values.hpp"
+#include "host/view/look/value_colors.hpp"
 
 namespace tetwarp::view {
 
@@ -42,6 +42,7 @@ struct LiveFrame {
   std::vector<VolumeFrame> volumes;  ///< [volumes], empty: not warped
   SurfaceQuantity quantity = SurfaceQuantity::none;
   std::vector<std::vector<float>> values;  ///< as SurfaceValues::of()
+  ValueRange range;                        ///< of the values so far
   std::vector<ContactArrow> contacts;
   std::optional<GrabView> grab;
   std::optional<InputTime> input;  ///< of the newest pull that a step has followed

@@ -2,33 +2,31 @@
 /// The thread of a live simulation.
 #include "host/view/live_simulation.hpp"
 
+#include <pthread.h>
+
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <exception>
 #include <stdexcept>
 #include <utility>
 
 #include "host/base/point3.hpp"
+#include "host/view/grab_handle.hpp"
 #include "host/view/live_start.hpp"
 
 namespace tetwarp::view {
 namespace {
 constexpr const char* replay_message = "a replay takes no input";
-// Times the size of a body: what the mouse holds of an elastic body or cloth.
-constexpr double grab_share = 0.08;
 
-/// Of this thread [s].
-double processor_seconds() {
+/// [s]
+double seconds_of(clockid_t clock) {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(clock, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0 : sum / static_cast<double>(values.size());
+double processor_seconds() {
+  return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }
 }  // namespace
 
@@ -62,6 +60,12 @@ LiveSimulation::~LiveSimulation() {
 
 void LiveSimulation::begin() {
   thread_ = std::thread([this] { run(); });
+}
+
+double LiveSimulation::thread_seconds() {
+  clockid_t clock{};
+  pthread_getcpuclockid(thread_.native_handle(), &clock);
+  return seconds_of(clock);
 }
 
 void LiveSimulation::end() {
@@ -133,20 +137,6 @@ void LiveSimulation::loop() {
   }
 }
 
-PointHandle LiveSimulation::handle_at(std::size_t body, const Point3& point) const {
-  const BodyMesh& of = simulator_.body(body);
-  const Bounds bounds = bounds_of(simulator_.surface_positions(body));
-  const double size = norm(minus(bounds.high, bounds.low));
-  PointHandle handle{.body = simulator_.scene().bodies[body].name, .center = point};
-  handle.radius = options_.grab_radius.value_or(grab_share * size);
-  // A free body follows within about 0.1 s. An elastic one is pressed in by about half of the way
-  // of the mouse: a disc of radius r meets the stiffness 4 mu r / (1 - nu).
-  const double free = 400 * of.mass, pressed = 8 * mean_of(of.shear_modulus) * handle.radius;
-  handle.stiffness = options_.grab_stiffness.value_or(std::max({free, pressed, 1e-9}));
-  handle.damping = 0.2 * std::sqrt(handle.stiffness * of.mass);
-  return handle;
-}
-
 /// Orders that change the simulation become events, which are recorded.
 void LiveSimulation::follow(const Order& order) {
   InputEvent event{.tick = tick_};
@@ -180,7 +170,7 @@ void LiveSimulation::follow(const Order& order) {
         return;
       }
       event.kind = InputKind::grab;
-      event.handle = handle_at(order.body, order.point);
+      event.handle = grab_handle(simulator_, options_, order.body, order.point);
       break;
     case OrderKind::pull:
       pulled_ = order.time;
@@ -319,7 +309,7 @@ void LiveSimulation::wait_for_time() {
 }
 
 void LiveSimulation::note_change() {
-  is_published_ = is_sent_ = false;
+  is_published_ = is_sent_ = has_values_ = false;
 }
 
 void LiveSimulation::tell_listener() {
@@ -337,8 +327,6 @@ void LiveSimulation::publish() {
   for (std::size_t b = 0; b < frame.points.size(); ++b) {
     frame.points[b] = looks_.positions(b);
   }
-  frame.quantity = quantity_;
-  frame.values = values_.of(quantity_);
   if (warps_) {
     const double start = processor_seconds();
     volumes_.warp(
@@ -387,6 +375,19 @@ void LiveSimulation::fill(LiveFrame& frame) {
   frame.late_steps = late_steps_;
   frame.message = message_;
   frame.has_failed = has_failed_;
+  fill_values(frame);
+}
+
+/// Once for the window and for screens.
+void LiveSimulation::fill_values(LiveFrame& frame) {
+  if (!has_values_) {
+    shown_values_ = values_.of(quantity_);
+    range_.include(quantity_, shown_values_);
+    has_values_ = true;
+  }
+  frame.quantity = quantity_;
+  frame.values = shown_values_;
+  frame.range = range_;
 }
 
 }  // namespace tetwarp::view

@@ -77,6 +77,8 @@ class LiveSimulation {
   void set_listener(Listener listener) { listener_ = std::move(listener); }
 
   void begin();
+  /// Processor time of the thread so far, without those that help it [s]; from begin() to end().
+  double thread_seconds();
   /// Never waits. Of successive pulls only the last one acts.
   void give(const Order& order);
   TripleBuffer<LiveFrame>& frames() { return frames_; }
@@ -113,10 +115,10 @@ class LiveSimulation {
   void wait_for_time();
   void count_step();
   void fill(LiveFrame& frame);
+  void fill_values(LiveFrame& frame);
   void tell_listener();
   void publish();
   void note_change();
-  PointHandle handle_at(std::size_t body, const Point3& point) const;
 
   ViewOptions options_;
   Simulator simulator_;
@@ -126,6 +128,9 @@ class LiveSimulation {
   BodyCarrier carrier_;
   SurfaceValues values_;
   SurfaceQuantity quantity_;
+  std::vector<std::vector<float>> shown_values_;  ///< of the state, if they are not stale
+  bool has_values_ = false;
+  ValueRange range_;
   std::vector<std::byte> start_;
   std::optional<InputLog> replay_;
   std::size_t next_event_ = 0;      ///< of the replay

@@ -11,6 +11,11 @@
 
 namespace tetwarp::view {
 
+/// A half-line from an eye or a wand.
+struct EyeRay {
+  Point3 origin{}, direction{};
+};
+
 /// A point of a surface.
 struct Pick {
   std::size_t body = 0;

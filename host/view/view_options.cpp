@@ -119,6 +119,12 @@ bool read(std::string_view text, std::optional<T>& value) {
 
 }  // namespace
 
+std::vector<std::string> ViewOptions::outputs() const {
+  std::vector<std::string> files{screenshot, film, record, checkpoint};
+  std::erase(files, "");
+  return files;
+}
+
 std::string ViewOptions::scene_words() const {
   std::string words = scene();
   if (ball) words += " --ball ";

@@ -40,14 +40,18 @@ struct ViewOptions {
   std::string join, screen;       ///< address of the master to follow, name of the screen to show
   bool ends_with_master = false;  ///< of a screen that the master started
   bool timing = false;            ///< says at the end what took how long
-  bool tracker = false;           ///< sends poses of the head instead of showing a screen
-  std::string devices;            ///< names between commas, see DeviceHand
-  std::string make_keys;          ///< name of key files to write, instead of all else
+  /// Sends poses of the head instead of showing a screen: "-" those of the standard input, else
+  /// those of a tracker, see open_tracked_device(). Empty: it shows a screen.
+  std::string tracker;
+  std::string devices;    ///< names between commas, see open_devices()
+  std::string make_keys;  ///< name of key files to write, instead of all else
 
   bool operator==(const ViewOptions&) const = default;
 
   /// The scene, for messages.
   const std::string& scene() const { return scene_file.empty() ? scene_name : scene_file; }
+  /// The files that it writes, but for the keys.
+  std::vector<std::string> outputs() const;
   /// The scene with what options add to it, as a record of input names it.
   std::string scene_words() const;
 };

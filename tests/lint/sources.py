@@ -16,7 +16,7 @@ PUBLIC = ("host/tetwarp", "io/tetwarp", "kernels/base/tetwarp")
 # also lie one folder up or be public.
 VARIANTS = ("cuda", "nocuda", "cpu", "reference", "avx2", "avx512", "base", "gif", "nogif", "gmsh",
             "nogmsh", "gdcm", "nogdcm", "mpi", "nompi", "sdl", "nosdl", "spnav",
-            "nospnav", "vtk", "novtk", "zmq", "nozmq")
+            "nospnav", "vrpn", "novrpn", "vtk", "novtk", "zmq", "nozmq")
 # Programs: main and its subcommands have no header.
 PROGRAMS = re.compile(r"(host/cli|host/view/window|io/reader)/(main|(\w+/)?cmd_\w+)\.cpp")
 # Other files whose functions a header of another name declares, by this header.

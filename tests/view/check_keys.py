@@ -88,10 +88,10 @@ class Window:
         self.count += 1
         return pixels_of(path)[1]
 
-    def until(self, what, holds):
-        """The first picture of which something holds."""
+    def until(self, what, holds, steps=""):
+        """The first picture, each after some steps, of which something holds."""
         end = time.monotonic() + SECONDS
-        while not holds(rows := self.picture()):
+        while not holds(rows := self.picture(steps)):
             if time.monotonic() > end:
                 fail(f"{what}: not seen")
         return rows
@@ -99,6 +99,7 @@ class Window:
     def close(self):
         self.do("keydown Escape")
         _, problems = self.process.communicate(timeout=SECONDS)
+        problems = [line for line in problems.splitlines() if not line.startswith("vrpn")]
         self.do("keyup Escape")
         if self.process.returncode != 0 or problems:
             fail(f"status {self.process.returncode}: {problems}")
@@ -181,6 +182,16 @@ def check_volume(window, first):
     window.do("key v")
 
 
+def check_full_screen(window, first):
+    """As large as the display, and back; there is no window manager."""
+    full = window.picture("key F11")
+    if (len(full[0]), len(full)) != (640, 480):
+        fail(f"F11: {len(full[0])} x {len(full)} pixels")
+    back = window.picture("key F11")
+    if (len(back[0]), len(back)) != SIZE or differ(back, first) > 0:
+        fail(f"F11 again: {len(back[0])} x {len(back)} pixels")
+
+
 def check_steps(window, folder):
     """Pause, single steps, the start again, and a film."""
     first_line = window.picture()[:16]  # with the number of the step
@@ -252,6 +263,7 @@ def main():
             first = window.picture()
             check_camera(window, first)
             check_looks(window, first)
+            check_full_screen(window, first)
             check_volume(window, first)
             check_steps(window, folder)
             pixel = check_tools(window)

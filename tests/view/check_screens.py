@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from check_window import SECONDS, Display, fail, pixels_of, press
+from check_window import SCENE, SECONDS, Display, fail, pixels_of, press
 
 PIXELS = 240  # width and height of each screen
 WINDOW = (380, 340)  # width and height of the master's window in the test of the curve
@@ -293,6 +293,23 @@ def check_curve(command, environment, folder):
         fail(f"curve: {changed} pixels of the window and the screen have changed")
 
 
+def check_stress(command, environment, folder):
+    """A screen colors a block that stands on its foot by its stress, as the master's window does."""
+    (folder / "block.json").write_text(SCENE, encoding="ascii")
+    done = subprocess.run(
+        [command, "view", "block.json", "--screens", "room.json", "--fast", "--steps", "30", "--size",
+         "240,240", "--screenshot", "stress.png", "--colors", "stress"],
+        env=environment, cwd=folder, timeout=SECONDS, capture_output=True, text=True)
+    if done.returncode != 0:
+        fail(f"stress: status {done.returncode}: {done.stderr}")
+    pixels = [pixel for row in pixels_of(folder / "stress_front.png")[1] for pixel in row]
+    blue = sum(b > 70 and b > 1.5 * r and b > 1.2 * g for r, g, b in pixels)
+    others = sum(max(r, g) > 60 and max(r, g) > 1.1 * b for r, g, b in pixels)
+    print(f"stress on a screen: {blue} pixels of low, {others} of higher stress")
+    if blue < 200 or others < 200:
+        fail("stress: the screen does not show it")
+
+
 def check_refusals(command, environment, folder):
     """Wrong input is one line and no process stays."""
     for words, expected in (
@@ -324,6 +341,7 @@ def main():
             check_refusals(command, environment, folder)
             check_room(command, environment, folder)
             check_curve(command, environment, folder)
+            check_stress(command, environment, folder)
 
 
 if __name__ == "__main__":

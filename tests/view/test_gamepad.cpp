@@ -67,7 +67,9 @@ TEST(Gamepad, SticksAndButtonsMoveTurnAndGrab) {
   EXPECT_EQ(pressed.turn[1], 0);
   EXPECT_TRUE(pressed.grabs);
   pad.press(SDL_CONTROLLER_BUTTON_A, false);
+  pad.press(SDL_CONTROLLER_BUTTON_B, true);
   EXPECT_FALSE(device->read().value().state.grabs);
+  EXPECT_TRUE(device->read().value().state.probes);
   pad.detach();
   EXPECT_FALSE(device->read()) << "it is gone";
 }

@@ -175,6 +175,9 @@ TEST(ScreenServer, ATrackerMovesTheHead) {
   const HeadPose head{{0.1, 0.2, 0.3}, {0.6, 0, 0.8, 0}};
   left.link.send(HeadMessage{head});
   EXPECT_TRUE(left.gets_head(head));
+  EXPECT_TRUE(master.comes_to([](const ScreenCounts& c) { return c.has_lost_head; }));
+  left.link.send(HeadMessage{head});
+  EXPECT_TRUE(master.comes_to([](const ScreenCounts& c) { return !c.has_lost_head; }));
 }
 
 TEST(ScreenLink, LosesNoMessageOnceThereIsAMaster) {

@@ -53,6 +53,7 @@ TEST(ScreenMessage, IsTheSameAfterItsBytes) {
                      {1, false, 0.5, 2, {{0, 0.25, 1}, 2}, Cut{{1, 2, 3}, {0, 0.6, 0.8}}},
                      {}};
   frame.look.curve = {{0, {1, 0, 0}, 0}, {0.5, {0, 0.25, 0}, 0.5}, {1, {0, 0, 1}, 1}};
+  frame.look.rays = {{{{1, 2, 3}, {4, 5, 6}}}};
   frame.state = {std::byte{3}};
   const auto framed = again<FrameMessage>(ToScreen(frame), to_screen);
   EXPECT_EQ(framed.frame, 6u);
@@ -103,6 +104,11 @@ TEST(ScreenMessage, NumbersOutOfRangeAreRefused) {
   bad.look.cut = Cut{{0, 0, 0}, {0, 0, 2}};
   is_refused(bad);
   bad = frame;
+  bad.look.rays = {{{{0, 0, 0}, {NAN, 0, 0}}}};
+  is_refused(bad);
+  bad.look.rays.assign(65, WandRay{});
+  is_refused(bad);
+  bad = frame;
   bad.eye_separation = -1;
   is_refused(bad);
   frame.look.curve = {{0, {0, 0, 0}, 0}, {0.5, {0, 0, 0}, 0}, {1, {0, 0, 0}, 0}};
@@ -137,8 +143,9 @@ TEST(ScreenMessage, NumbersOutOfRangeAreRefused) {
 
 /// A simulation whose body with a volume is pulled and whose ball rolls.
 struct Shared {
-  Shared() {
+  explicit Shared(const std::string& colors = "none") {
     ViewOptions options;
+    options.colors = colors;
     options.paused = true;
     options.fast = true;
     Scene scene = live_scene();
@@ -159,12 +166,14 @@ struct Shared {
     simulation.give({.kind = OrderKind::grab, .body = 0, .point = {0, 0, 0.1}});
     simulation.give({.kind = OrderKind::pull, .point = {0.03, 0.02, 0.12}});
     for (int n = 0; n < 5; ++n) simulation.give({.kind = OrderKind::step});
-    points = frame_at(simulation, 5).points;
+    frame = frame_at(simulation, 5);
+    points = frame.points;
     simulation.end();
     scene_bytes = bytes_of(sharer.scene());
   }
   SharedState state;
   Bytes scene_bytes;
+  LiveFrame frame;                          ///< of the window after the last step
   std::vector<std::vector<Point3>> points;  ///< [bodies] after the last step
 };
 
@@ -191,16 +200,70 @@ TEST(SharedState, GivesScreensTheSurfacesOfTheSimulation) {
   EXPECT_EQ(bytes_of(scene), shared.scene_bytes);
 }
 
+/// Values of a screen are those of the window to half a step of 1/254 of their range, which is the
+/// same in both.
+TEST(SharedState, GivesScreensTheValuesOfTheWindow) {
+  for (const std::string colors : {"stress", "gap", "adhesion"}) {
+    const Shared shared(colors);
+    const SharedScene scene = scene_of(shared.scene_bytes);
+    LiveFrame frame;
+    set_frame(scene, state_of(bytes_of(shared.state), scene), frame);
+    EXPECT_EQ(frame.quantity, quantity_of(colors));
+    const double extent = shared.frame.range.high() - shared.frame.range.low();
+    EXPECT_NEAR(frame.range.low(), shared.frame.range.low(), 1e-6 * extent);
+    EXPECT_NEAR(frame.range.high(), shared.frame.range.high(), 1e-6 * extent);
+    int counts[2]{};  // points without and with a value
+    ASSERT_EQ(frame.values.size(), shared.frame.values.size());
+    for (std::size_t b = 0; b < frame.values.size(); ++b) {
+      ASSERT_EQ(frame.values[b].size(), frame.points[b].size());
+      for (std::size_t p = 0; p < frame.values[b].size(); ++p) {
+        const float window = shared.frame.values[b][p], screen = frame.values[b][p];
+        ++counts[std::isnan(window) ? 0 : 1];
+        EXPECT_EQ(std::isnan(screen), std::isnan(window));
+        if (std::isnan(window)) continue;
+        EXPECT_NEAR(screen, window, (0.5 / 254 + 1e-6) * extent);
+      }
+    }
+    EXPECT_GT(counts[0], 0) << colors;
+    EXPECT_GT(counts[1], 0) << colors;
+  }
+}
+
+TEST(SharedState, WithLevelsOfOtherPointsIsRefused) {
+  const Shared shared("stress");
+  const SharedScene scene = scene_of(shared.scene_bytes);
+  const auto is_refused = [&](const SharedState& state) {
+    EXPECT_THROW(state_of(bytes_of(state), scene), std::invalid_argument);
+  };
+  SharedState bad = shared.state;
+  bad.levels[0].pop_back();
+  is_refused(bad);
+  bad = shared.state;
+  bad.levels.pop_back();
+  is_refused(bad);
+  bad = shared.state;
+  bad.range = {1, 0};
+  is_refused(bad);
+  bad.range = {NAN, 0};
+  is_refused(bad);
+  bad = shared.state;
+  bad.quantity = static_cast<SurfaceQuantity>(9);
+  is_refused(bad);
+}
+
+/// A block of 10 x 10 x 20 nodes, of which 848 are drawn, in colors.
 TEST(SharedState, OfTwoThousandNodesTakesAtMost30Kilobytes) {
   SharedState state;
   state.moving.resize(1);
   state.moving[0].resize(2000);
+  state.levels.resize(1);
+  state.levels[0].resize(848);
   state.contacts.resize(153);  // the largest number of the shoulder in the paper
   FrameMessage frame;
   frame.state = bytes_of(state);
   const std::size_t bytes = bytes_of(ToScreen(frame)).size();
   EXPECT_LE(bytes, 30000u);
-  EXPECT_GE(bytes, 24000u);
+  EXPECT_GE(bytes, 24848u);
 }
 
 /// Cut and damaged bytes are read or refused, and nothing else happens.
@@ -244,7 +307,7 @@ TEST(ScreenMessage, DamagedBytesAreReadOrRefused) {
 }
 
 TEST(SharedScene, DamagedBytesAreReadOrRefused) {
-  const Shared shared;
+  const Shared shared("stress");
   damage(shared.scene_bytes, 5, [](const Bytes& b) { scene_of(b); });
   const SharedScene scene = scene_of(shared.scene_bytes);
   damage(bytes_of(shared.state), 6, [&](const Bytes& b) {

@@ -74,11 +74,35 @@ TEST(SimulatedDevice, ReadsItsLinesOneByOne) {
   EXPECT_FALSE(device.read());
 }
 
+TEST(SimulatedDevice, HasThePoseOfAWand) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "wand.txt";
+  std::ofstream(path) << "0.1  0 0 0  0 0 0  1  1 2 3  0 0 2 0  1\n";
+  SimulatedDevice device(path);
+  const DeviceState state = device.read().value().state;
+  EXPECT_EQ(state.pose, (DevicePose{{1, 2, 3}, {0, 0, 1, 0}}));
+  EXPECT_TRUE(state.grabs);
+  EXPECT_TRUE(state.probes);
+}
+
+TEST(Stick, RestsNearItsMiddle) {
+  for (const double value : {0.0, 0.15, -0.15, 0.1}) EXPECT_EQ(beyond_rest(value), 0);
+  EXPECT_EQ(beyond_rest(1), 1);
+  EXPECT_EQ(beyond_rest(-1), -1);
+  EXPECT_EQ(beyond_rest(-2), -1);
+  for (double value = 0.15; value < 1; value += 0.01) {
+    EXPECT_NEAR(beyond_rest(value), (value - 0.15) / 0.85, 1e-12);
+    EXPECT_EQ(beyond_rest(-value), -beyond_rest(value));
+  }
+}
+
 TEST(SimulatedDevice, NamesTheLineThatIsWrong) {
   const TemporaryFolder folder;
   const std::string path = folder / "motion.txt";
-  for (const std::string line : {"", "0.1 0 0 0 0 0 0", "0.1 0 0 0 0 0 0 0 0", "0.1 2 0 0 0 0 0 0",
-                                 "-1 0 0 0 0 0 0 0", "0.1 0 0 0 0 0 0 3", "0.1 0 0 a 0 0 0 0"}) {
+  for (const std::string line :
+       {"", "0.1 0 0 0 0 0 0", "0.1 0 0 0 0 0 0 0 0", "0.1 2 0 0 0 0 0 0", "-1 0 0 0 0 0 0 0",
+        "0.1 0 0 0 0 0 0 3", "0.1 0 0 a 0 0 0 0", "0.1 0 0 0 0 0 0 0 1 2 3 1 0 0 0",
+        "0.1 0 0 0 0 0 0 0 1 2 3 1 0 0 0 2", "0.1 0 0 0 0 0 0 0 1 2 3 0 0 0 0 1"}) {
     std::ofstream(path) << "0.1 0 0 0 0 0 0 0\n" << line << "\n";
     try {
       const SimulatedDevice device(path);

@@ -47,12 +47,7 @@ void check_output_file(const std::string& output, const std::vector<std::string>
   if (fs::exists(output, error) && !fs::is_regular_file(output, error)) {
     throw IoError(output, "", "exists and is not a regular file; choose another name");
   }
-  const std::string canonical = canonical_path(output);
-  for (const std::string& input : inputs) {
-    if (canonical == canonical_path(input) || fs::equivalent(output, input, error)) {
-      throw IoError(output, "", "is also an input; name another output");
-    }
-  }
+  check_no_input(output, inputs);
   check_new_folder(fs::path(link_target(output)).parent_path().string(), output);
 }
 
@@ -186,12 +181,6 @@ void check_mesh(const std::string& path, const std::string& remedy) {
   const FileKind kind = sound_kind_of(path);
   const bool is_imported = kind == FileKind::unknown && has_mesh_extension(path);
   if (kind != FileKind::mesh && !is_imported) refuse_kind(path, kind, "mesh", remedy);
-}
-
-std::string canonical_path(const std::string& path) {
-  std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(fs::absolute(link_target(path)), error);
-  return error ? path : canonical.string();
 }
 
 }  // namespace tetwarp::cli

@@ -6,6 +6,8 @@
 
 #include <tetwarp/io.hpp>
 
+#include "io/files/input_check.hpp"
+
 namespace tetwarp::cli {
 
 /// Checks that a file can be written: not a folder, none of `inputs`, and its folder is writable or
@@ -48,8 +50,5 @@ void check_series(const std::string& series,
 
 /// Checks that a file can be opened and is a mesh: VTKHDF, or by its name Gmsh's or VTK's.
 void check_mesh(const std::string& path, const std::string& remedy);
-
-/// The absolute path with links and dots resolved, also of a file that does not exist.
-std::string canonical_path(const std::string& path);
 
 }  // namespace tetwarp::cli

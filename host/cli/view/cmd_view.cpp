@@ -49,7 +49,7 @@ std::string find_viewer() {
 /// Nothing is written to a file that an option names, or twice. The viewer, which reads the scene,
 /// checks the files that the scene names.
 void check_files(const view::ViewOptions& options) {
-  std::vector<std::string> inputs, outputs;
+  std::vector<std::string> inputs;
   for (const std::string& device : CLI::detail::split(options.devices, ',')) {
     if (fs::exists(device)) inputs.push_back(device);
   }
@@ -57,11 +57,7 @@ void check_files(const view::ViewOptions& options) {
        {options.scene_file, options.replay, options.restart, options.key, options.screens}) {
     if (!file.empty()) inputs.push_back(file);
   }
-  for (const std::string& file :
-       {options.screenshot, options.film, options.record, options.checkpoint}) {
-    if (!file.empty()) outputs.push_back(file);
-  }
-  check_output_files(outputs, inputs);
+  check_output_files(options.outputs(), inputs);
 }
 
 /// Replaces this process.
@@ -165,7 +161,8 @@ void declare_input(CLI::App& app, view::ViewOptions& options) {
       ->check(above_zero())
       ->type_name("K");
   app.add_option("--devices", options.devices,
-                 "gamepad, spacemouse or a file of motions, with commas between them [none]")
+                 "gamepad, spacemouse, wand=NAME@HOST by VRPN, or a file of motions, with commas "
+                 "between them [none]")
       ->type_name("NAME,...");
   app.add_option("--record", options.record, "write what the mouse did, by step")
       ->type_name("FILE");
@@ -191,9 +188,13 @@ void declare_screens(CLI::App& app, view::ViewOptions& options) {
   app.add_option("--join", options.join, "draw a screen of a program on another machine")
       ->type_name("tcp://HOST:PORT");
   app.add_option("--screen", options.screen, "which screen, with --join")->type_name("NAME");
-  app.add_flag(
-      "--tracker", options.tracker,
-      "with --join: send poses of the head, lines x y z [qw qx qy qz], from standard input");
+  app.add_option(
+         "--tracker", options.tracker,
+         "with --join: send poses of the head, of a VRPN tracker, or without a name lines x "
+         "y z [qw qx qy qz] from standard input")
+      ->expected(0, 1)
+      ->default_str("-")
+      ->type_name("NAME@HOST");
   app.add_option("--key", options.key, "keys of the room, which other machines need")
       ->check(CLI::ExistingFile.description(""))
       ->type_name("FILE");
@@ -217,10 +218,10 @@ void refuse_others(const CLI::App& command, const std::string& mode, std::set<st
 void check_mode(const view::ViewOptions& options, const CLI::App& command) {
   if (!options.make_keys.empty()) refuse_others(command, "--make-keys", {});
   if (options.join.empty()) return;
-  if (options.screen.empty() != options.tracker) {
+  if (options.screen.empty() == options.tracker.empty()) {
     throw CLI::ValidationError("--join", "needs either --screen NAME or --tracker");
   }
-  if (options.tracker) {
+  if (!options.tracker.empty()) {
     refuse_others(command, "--tracker", {"--join", "--key"});
   } else {
     refuse_others(command, "--join",
@@ -249,7 +250,7 @@ void check_view(const view::ViewOptions& options, const CLI::App& command) {
   if (options.scene().empty() && options.join.empty() && options.make_keys.empty()) {
     throw CLI::ValidationError("SCENE", "is missing: a file, or the name of a scene that ships");
   }
-  if (options.join.empty() && (!options.screen.empty() || options.tracker)) {
+  if (options.join.empty() && (!options.screen.empty() || !options.tracker.empty())) {
     throw CLI::ValidationError("--screen and --tracker", "need --join ADDRESS");
   }
   if (options.screens.empty() && options.join.empty() && !options.key.empty()) {

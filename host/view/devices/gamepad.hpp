@@ -8,7 +8,7 @@
 namespace tetwarp::view {
 
 /// The first gamepad that is connected: the left stick and the shoulder buttons move, the right
-/// stick and the triggers turn, A grabs.
+/// stick and the triggers turn, A grabs, B probes.
 /// @throws std::runtime_error  none is connected, or this program was built without SDL2
 std::unique_ptr<InputDevice> open_gamepad();
 

@@ -3,7 +3,6 @@
 #include <SDL.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "host/base/stopwatch.hpp"
@@ -11,8 +10,6 @@
 
 namespace tetwarp::view {
 namespace {
-constexpr double dead_share = 0.15;  // of an axis, within which a stick rests
-
 class Gamepad : public InputDevice {
  public:
   Gamepad() {
@@ -47,6 +44,7 @@ class Gamepad : public InputDevice {
         axis(SDL_CONTROLLER_AXIS_RIGHTY), axis(SDL_CONTROLLER_AXIS_RIGHTX),
         axis(SDL_CONTROLLER_AXIS_TRIGGERLEFT) - axis(SDL_CONTROLLER_AXIS_TRIGGERRIGHT)};
     span.state.grabs = button(SDL_CONTROLLER_BUTTON_A) > 0;
+    span.state.probes = button(SDL_CONTROLLER_BUTTON_B) > 0;
     span.seconds = std::min(since_.seconds(), most_span);
     since_ = {};
     return span;
@@ -56,9 +54,7 @@ class Gamepad : public InputDevice {
   double button(SDL_GameControllerButton of) const { return SDL_GameControllerGetButton(pad_, of); }
   /// -1 to 1, and 0 where a stick rests.
   double axis(SDL_GameControllerAxis of) const {
-    const double value = std::max(SDL_GameControllerGetAxis(pad_, of) / 32767.0, -1.0);
-    const double size = std::max(std::abs(value) - dead_share, 0.0) / (1 - dead_share);
-    return std::copysign(size, value);
+    return beyond_rest(SDL_GameControllerGetAxis(pad_, of) / 32767.0);
   }
 
   SDL_GameController* pad_ = nullptr;

@@ -2,6 +2,7 @@
 /// Moves and turns in the axes of a camera.
 #include "host/view/devices/input_device.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,6 +12,7 @@ namespace tetwarp::view {
 namespace {
 constexpr double most_way = 0.5;                    // distances of eye and target a second
 constexpr double most_turn = std::numbers::pi / 2;  // [1/s]
+constexpr double rest_share = 0.15;                 // of a stick, within which it rests
 
 /// Right, up and back.
 std::array<Point3, 3> axes_of(const Camera& camera) {
@@ -29,6 +31,18 @@ Point3 turned(const Point3& x, const Point3& axis, double angle) {
   return plus(plus(times(std::cos(angle), x), times(std::sin(angle), cross(axis, x))), part);
 }
 }  // namespace
+
+double beyond_rest(double value) {
+  const double size = std::max(std::abs(value) - rest_share, 0.0) / (1 - rest_share);
+  return std::copysign(std::min(size, 1.0), value);
+}
+
+std::optional<std::array<double, 4>> unit_rotation(const std::array<double, 4>& rotation) {
+  const auto& [w, x, y, z] = rotation;
+  const double size = std::sqrt(w * w + x * x + y * y + z * z);
+  if (!(size > 0 && std::isfinite(size))) return std::nullopt;
+  return std::array{w / size, x / size, y / size, z / size};
+}
 
 Point3 carried_way(const Camera& camera, const DeviceSpan& by) {
   const double distance = norm(minus(camera.eye, camera.target));

@@ -10,11 +10,21 @@
 
 namespace tetwarp::view {
 
+/// Where a tracked device is, in coordinates of the room: x to the right, y up, z back.
+struct DevicePose {
+  Point3 position{};                           ///< [m]
+  std::array<double, 4> rotation{1, 0, 0, 0};  ///< unit quaternion w x y z
+
+  bool operator==(const DevicePose&) const = default;
+};
+
 /// Axes are to the right, up and towards the user, as the camera sees them.
 struct DeviceState {
-  Point3 move{};       ///< how far the device is pushed along each, -1 to 1
-  Point3 turn{};       ///< and turned about each
-  bool grabs = false;  ///< a button is held down
+  Point3 move{};                        ///< how far the device is pushed along each, -1 to 1
+  Point3 turn{};                        ///< and turned about each
+  bool grabs = false;                   ///< a button is held down
+  bool probes = false;                  ///< and another one
+  std::optional<DevicePose> pose = {};  ///< of a device that is tracked
 
   bool operator==(const DeviceState&) const = default;
 };
@@ -35,7 +45,15 @@ class InputDevice {
   virtual std::optional<DeviceSpan> read() = 0;
   /// Whether it is no real one: it will be gone by itself.
   virtual bool is_simulated() const { return false; }
+  /// Why it says nothing now though it may again, or empty.
+  virtual std::string problem() const { return {}; }
 };
+
+/// A value of a stick, -1 to 1, without the part within which it rests.
+double beyond_rest(double value);
+
+/// A quaternion w x y z of length 1; nothing: it has none.
+std::optional<std::array<double, 4>> unit_rotation(const std::array<double, 4>& rotation);
 
 /// The camera after a device moved it: it goes along with the target by half a distance of both a
 /// second at most, and turns about the target by a quarter turn a second at most.

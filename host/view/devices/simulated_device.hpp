@@ -12,7 +12,8 @@ namespace tetwarp::view {
 /// One line is read at a time, however often that is: the same lines do the same.
 class SimulatedDevice : public InputDevice {
  public:
-  /// @param path  lines "seconds, move x y z, turn x y z, grabs 0 or 1"
+  /// @param path  lines "seconds, move x y z, turn x y z, grabs 0 or 1", and of a wand "place x y
+  ///              z, rotation qw qx qy qz, probes 0 or 1" in them
   /// @throws IoError  naming the file and the line
   explicit SimulatedDevice(const std::string& path);
 

@@ -1,6 +1,7 @@
 /// @file space_mouse_spnav.cpp
 /// Events of the daemon, whose axes are to the right, up and away from the user.
 #include <spnav.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -27,6 +28,9 @@ class SpaceMouse : public InputDevice {
   std::optional<DeviceSpan> read() override {
     spnav_event event;
     while (spnav_poll_event(&event) != 0) take(event);
+    char next = 0;
+    const auto waiting = recv(spnav_fd(), &next, 1, MSG_PEEK | MSG_DONTWAIT);
+    if (waiting == 0) return std::nullopt;  // the daemon has ended
     if (said_.seconds() > rest_seconds) state_.move = state_.turn = {0, 0, 0};
     const DeviceSpan span{state_, std::min(since_.seconds(), most_span)};
     since_ = {};
@@ -42,8 +46,9 @@ class SpaceMouse : public InputDevice {
       state_.move = {share(by.x), share(by.y), -share(by.z)};
       state_.turn = {share(by.rx), share(by.ry), -share(by.rz)};
       said_ = {};
-    } else if (event.type == SPNAV_EVENT_BUTTON && event.button.bnum == 0) {
-      state_.grabs = event.button.press != 0;
+    } else if (event.type == SPNAV_EVENT_BUTTON) {
+      if (event.button.bnum == 0) state_.grabs = event.button.press != 0;
+      if (event.button.bnum == 1) state_.probes = event.button.press != 0;
     }
   }
 

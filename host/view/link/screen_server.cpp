@@ -136,6 +136,7 @@ void ScreenServer::run() {
     counts_.lost = gone_;
     counts_.screens = static_cast<std::int64_t>(group_.size());
     counts_.late = group_.late_count();
+    counts_.has_lost_head = tracked_ && clock_.seconds() - heard_head_ > silent_seconds;
   }
   for (const std::string& member : group_.members()) send(member, EndMessage{});
 }
@@ -193,6 +194,7 @@ void ScreenServer::receive(const std::string& member, const ToMaster& message) {
   if (const auto* const join = std::get_if<JoinMessage>(&message)) return welcome(member, *join);
   if (const auto* const head = std::get_if<HeadMessage>(&message)) {
     tracked_ = head->head;
+    heard_head_ = clock_.seconds();
     needs_frame_ = true;
   } else if (std::holds_alternative<LeaveMessage>(message)) {
     group_.leave(member);

@@ -28,6 +28,7 @@ struct ScreenCounts {
   std::int64_t late = 0;          ///< frames that a screen had not drawn in time
   std::int64_t lost = 0;          ///< screens that fell silent
   std::int64_t malformed = 0;     ///< messages that were ignored
+  bool has_lost_head = false;     ///< a tracker has spoken, and is silent now
 };
 
 class ScreenServer {
@@ -80,6 +81,7 @@ class ScreenServer {
   // of the thread
   SwapGroup group_;
   std::optional<HeadPose> tracked_;
+  double heard_head_ = 0;  ///< when [s]
   std::uint64_t frame_ = 0;
   double sent_ = 0;           ///< when the last frame was [s]
   double asked_ = 0;          ///< when find_gone() was [s]

@@ -12,9 +12,12 @@ namespace tetwarp::view {
 /// @param share  of the range; what is beyond its ends has the color of the end
 Rgb value_color(double share);
 
-/// The range of the values of a quantity that were drawn so far.
+/// The range of the values of a quantity so far.
 class ValueRange {
  public:
+  ValueRange() = default;
+  ValueRange(double low, double high) : low_(low), high_(high) {}
+
   /// Starts anew with another quantity.
   void include(SurfaceQuantity quantity, const std::vector<std::vector<float>>& values);
   /// Adhesion goes from 0 to 1, stress from 0 on, gaps between their extremes.

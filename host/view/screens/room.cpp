@@ -98,12 +98,6 @@ std::array<Point3, 2> eyes_of(const HeadPose& head, double eye_separation) {
   return {minus(head.position, half), plus(head.position, half)};
 }
 
-Point3 RoomPlace::world_of(const Point3& x) const {
-  Point3 world = origin;
-  for (std::size_t a = 0; a < 3; ++a) world = plus(world, times(x[a] - observer[a], axes[a]));
-  return world;
-}
-
 RoomPlace place_of_camera(const Room& room,
                           const Point3& eye,
                           const Point3& target,

@@ -10,6 +10,8 @@
 
 #include <tetwarp/volume.hpp>
 
+#include "host/view/hand/room_place.hpp"
+
 namespace tetwarp::view {
 
 /// Limits of rooms, of their files and of messages alike.
@@ -57,6 +59,7 @@ struct Room {
   double wait = 0.1;  ///< longest wait for the slowest screen before the others swap [s]
   std::vector<Screen> screens;
   std::vector<HeadPoint> head_path;  ///< of a simulated tracker; empty: none
+  std::string tracker;               ///< of the head, see open_tracked_device(); empty: none
   std::vector<std::string> notes;    ///< keys of its file that have no effect, a line for each
 };
 
@@ -69,17 +72,6 @@ HeadPose head_at(const std::vector<HeadPoint>& path, double time);
 
 /// Left and right eye in the room.
 std::array<Point3, 2> eyes_of(const HeadPose& head, double eye_separation);
-
-/// Where the room is in the world, as the master's camera moves it: x maps to
-/// origin + axes (x - observer).
-struct RoomPlace {
-  Point3 observer{};             ///< in the room
-  Point3 origin{};               ///< the observer in the world
-  std::array<Point3, 3> axes{};  ///< of the room in the world, as long as a meter is there
-
-  Point3 world_of(const Point3& x) const;
-  bool operator==(const RoomPlace&) const = default;
-};
 
 /// The room whose observer looks ahead as a camera does, with the camera's target at the focus.
 /// @throws std::invalid_argument  the camera's eye and target coincide, or `up` is along its view

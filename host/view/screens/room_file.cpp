@@ -81,6 +81,7 @@ Room parse_room(const std::string& text, const std::string& name) {
   Room room;
   Stereo stereo = Stereo::none;
   read_text_of(object, "address", room.address);
+  read_text_of(object, "tracker", room.tracker);
   object.read("observer", room.observer);
   object.read("eye_separation", room.eye_separation);
   object.read("focus", room.focus);

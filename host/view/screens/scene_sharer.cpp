@@ -104,6 +104,9 @@ SharedState SceneSharer::state(const Simulator& simulator, const LiveFrame& fram
   for (const ContactArrow& contact : frame.contacts) {
     state.contacts.push_back({narrow(contact.position), narrow(contact.force)});
   }
+  state.quantity = frame.quantity;
+  state.range = {static_cast<float>(frame.range.low()), static_cast<float>(frame.range.high())};
+  state.levels = levels_of(frame.values, frame.range);
   if (frame.grab) state.grab = {narrow(frame.grab->point), narrow(frame.grab->target)};
   return state;
 }

@@ -47,15 +47,15 @@ template <class Stream, class Value>
 requires std::same_as<std::remove_const_t<Value>, FrameMessage>
 void exchange_members(Stream& stream, Value& message) {
   auto& [session, frame, head, eye_separation, place, look, state] = message;
-  auto& [volumes, shows_contacts, level, width, slices, cut, curve] = look;
+  auto& [volumes, shows_contacts, level, width, slices, cut, curve, rays] = look;
   auto& [places, alone] = slices;
   stream(session, frame, head, eye_separation, place, volumes, shows_contacts, level, width, places,
-         alone, cut, curve, state);
+         alone, cut, curve, rays, state);
 }
 
 namespace {
-constexpr std::array<char, 4> own_letters{'t', 'w', 's', '3'};
-constexpr std::size_t most_curve_points = 64;
+constexpr std::array<char, 4> own_letters{'t', 'w', 's', '4'};
+constexpr std::size_t most_curve_points = 64, most_rays = 64;
 
 void check_head(const HeadPose& head) {
   double size = 0;
@@ -115,6 +115,10 @@ void check_message(const FrameMessage& message) {
   require(
       !look.cut || (is_in_world(look.cut->point) && std::abs(norm(look.cut->normal) - 1) < 1e-6),
       "no cut");
+  require(look.rays.size() <= most_rays, "too many rays");
+  for (const auto& [from, to] : look.rays) {
+    require(is_in_world(from) && is_in_world(to), "no ray");
+  }
 }
 
 template <class Message>

@@ -51,6 +51,7 @@ struct ScreenLook {
   SliceLook slices = {};
   std::optional<Cut> cut = {};
   std::vector<ColorPoint> curve = {};  ///< as VolumeColors::set_curve(); empty: nobody changed it
+  std::vector<WandRay> rays = {};      ///< of wands
 
   bool operator==(const ScreenLook&) const = default;
 };

@@ -40,10 +40,7 @@ void check(const SharedBody& body) {
     require(std::ranges::all_of(weights, [](double w) { return std::isfinite(w); }),
             "a number that is not finite");
   }
-  const std::size_t points = is_bound  ? body.nodes.size()
-                             : is_pose ? body.rest_points.size()
-                                       : static_cast<std::size_t>(body.moving_count);
-  require(are_below(body.triangles, static_cast<std::int64_t>(points)),
+  require(are_below(body.triangles, static_cast<std::int64_t>(point_count(body))),
           "a point that is not there");
 }
 
@@ -100,6 +97,12 @@ Volume volume_of(const Grid& grid, const std::vector<std::int16_t>& samples) {
   return volume;
 }
 }  // namespace
+
+std::size_t point_count(const SharedBody& body) {
+  if (body.form == BodyForm::nodes) return body.nodes.size();
+  return body.form == BodyForm::pose ? body.rest_points.size()
+                                     : static_cast<std::size_t>(body.moving_count);
+}
 
 // Each of these functions writes with a ByteWriter and reads with a ByteReader.
 

@@ -33,6 +33,9 @@ struct SharedBody {
   std::vector<Point3> rest_points = {};                 ///< [points], of form pose
 };
 
+/// How many points of a body are drawn.
+std::size_t point_count(const SharedBody& body);
+
 /// A volume and the mesh that warps it, whose nodes are those of its body.
 struct SharedVolume {
   RestVolume source;

@@ -15,8 +15,8 @@ namespace tetwarp::view {
 template <class Stream, class Value>
 requires std::same_as<std::remove_const_t<Value>, SharedState>
 void exchange_members(Stream& stream, Value& state) {
-  auto& [step, time, is_paused, moving, contacts, grab] = state;
-  stream(step, time, is_paused, moving, contacts, grab);
+  auto& [step, time, is_paused, moving, contacts, grab, quantity, range, levels] = state;
+  stream(step, time, is_paused, moving, contacts, grab, quantity, range, levels);
 }
 
 namespace {
@@ -50,7 +50,35 @@ std::vector<Point3> surface_of_body(const SharedBody& body, const std::vector<Fl
   }
   return points;
 }
+/// Values and their range, of which the levels are shares.
+void set_values(const SharedState& state, LiveFrame& frame) {
+  const auto [low, high] = state.range;
+  frame.quantity = state.quantity;
+  frame.range = ValueRange(low, high);
+  frame.values.clear();
+  for (const std::vector<std::uint8_t>& of_body : state.levels) {
+    auto& values = frame.values.emplace_back();
+    for (const std::uint8_t level : of_body) {
+      const float share = static_cast<float>(level) / 254;
+      values.push_back(level == no_level ? NAN : low + share * (high - low));
+    }
+  }
+}
 }  // namespace
+
+std::vector<std::vector<std::uint8_t>> levels_of(const std::vector<std::vector<float>>& values,
+                                                 const ValueRange& range) {
+  std::vector<std::vector<std::uint8_t>> levels;
+  for (const std::vector<float>& of_body : values) {
+    auto& of_points = levels.emplace_back();
+    for (const float value : of_body) {
+      const double share = std::clamp(range.share(value), 0.0, 1.0);
+      of_points.push_back(std::isnan(value) ? no_level
+                                            : static_cast<std::uint8_t>(std::lround(254 * share)));
+    }
+  }
+  return levels;
+}
 
 Bytes bytes_of(const SharedState& state) {
   return bytes_of_values(state);
@@ -64,6 +92,14 @@ SharedState state_of(std::span<const std::byte> bytes, const SharedScene& scene)
     require(state.moving[b].size() == static_cast<std::size_t>(scene.bodies[b].moving_count) &&
                 std::ranges::all_of(state.moving[b], is_finite_float),
             "no state of this scene");
+  }
+  require(state.quantity <= SurfaceQuantity::adhesion && std::isfinite(state.range[0]) &&
+              std::isfinite(state.range[1]) && state.range[0] <= state.range[1],
+          "no colors of this scene");
+  require(state.levels.empty() || state.levels.size() == scene.bodies.size(),
+          "no colors of this scene");
+  for (std::size_t b = 0; b < state.levels.size(); ++b) {
+    require(state.levels[b].size() == point_count(scene.bodies[b]), "no colors of this scene");
   }
   const auto are_finite = [](const std::array<Float3, 2>& pair) {
     return is_finite_float(pair[0]) && is_finite_float(pair[1]);
@@ -94,6 +130,7 @@ void set_frame(const SharedScene& scene, const SharedState& state, LiveFrame& fr
   }
   frame.grab.reset();
   if (state.grab) frame.grab = GrabView{wide((*state.grab)[0]), wide((*state.grab)[1]), {}};
+  set_values(state, frame);
 }
 
 }  // namespace tetwarp::view

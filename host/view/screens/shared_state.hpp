@@ -21,7 +21,17 @@ struct SharedState {
   std::vector<std::vector<Float3>> moving;      ///< [bodies][moving_count] [m]
   std::vector<std::array<Float3, 2>> contacts;  ///< place [m], force [N]
   std::optional<std::array<Float3, 2>> grab;    ///< point, target [m]
+  SurfaceQuantity quantity = SurfaceQuantity::none;
+  std::array<float, 2> range{};                   ///< of the quantity so far
+  std::vector<std::vector<std::uint8_t>> levels;  ///< [bodies][points] of it; empty: none
 };
+
+/// Of a value without color.
+inline constexpr std::uint8_t no_level = 255;
+
+/// Values as shares of a range in steps of 1/254 of it.
+std::vector<std::vector<std::uint8_t>> levels_of(const std::vector<std::vector<float>>& values,
+                                                 const ValueRange& range);
 
 Bytes bytes_of(const SharedState& state);
 

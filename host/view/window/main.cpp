@@ -7,13 +7,10 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <exception>
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
 #include <utility>
@@ -27,6 +24,7 @@
 #include "host/view/window/screens.hpp"
 #include "host/view/window/view_window.hpp"
 #include "io/files/finished_file.hpp"
+#include "io/files/input_check.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -45,26 +43,13 @@ void check_display() {
                            "; start it from a desktop, through ssh -X, or within xvfb-run");
 }
 
-/// Results are not written to the files that the scene names.
-void check_results(const ViewOptions& options, const std::vector<std::string>& inputs) {
-  for (const std::string& output :
-       {options.screenshot, options.film, options.record, options.checkpoint}) {
-    std::error_code error;
-    for (const std::string& input : inputs) {
-      if (!output.empty() && std::filesystem::equivalent(output, input, error)) {
-        throw IoError(output, "", "is also an input; name another output");
-      }
-    }
-  }
-}
-
-/// The scene, with tools.
+/// The scene, with tools. Results are not written to the files that it names.
 Scene load(const ViewOptions& options) {
   std::vector<std::string> inputs;
   Scene scene = options.scene_file.empty()
                     ? parse_scene(scene_text(options.scene_name), options.scene_name)
                     : read_scene(options.scene_file, &inputs);
-  check_results(options, inputs);
+  for (const std::string& output : options.outputs()) check_no_input(output, inputs);
   add_tools(options, scene);
   return scene;
 }
@@ -82,27 +67,20 @@ void write_results(LiveSimulation& simulation, const ViewOptions& options) {
                       {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// Drawing is all that the other threads do if the simulation has one.
-/// @param start  processor time at which the simulation began
-/// @param wall   since then [s]
-void print_timing(const LiveSimulation& simulation,
-                  const ViewWindow& window,
-                  std::clock_t start,
-                  double wall) {
+/// @param wall  since the simulation began [s]
+void print_timing(const LiveSimulation& simulation, const ViewWindow& window, double wall) {
   const LiveSeconds& spent = simulation.seconds();
-  const std::int64_t pictures = window.picture_count();
   const auto each = [](double seconds, std::int64_t count) {
     return 1000 * seconds / static_cast<double>(std::max<std::int64_t>(count, 1));
   };
-  const double all = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   std::printf(
       "processor time: %lld steps of %.2f ms, %lld warps of %.2f ms, %lld pictures of %.2f ms\n",
       static_cast<long long>(simulation.log().ticks), each(spent.steps, simulation.log().ticks),
       static_cast<long long>(spent.warp_count), each(spent.warps, spent.warp_count),
-      static_cast<long long>(pictures), each(all - spent.steps - spent.warps, pictures));
+      static_cast<long long>(window.pictures().count()), 1000 * window.pictures().seconds());
   std::printf("wall time: %.1f steps/s in %.1f s, %lld over their time; %.1f pictures/s\n",
               static_cast<double>(simulation.log().ticks) / wall, wall,
-              static_cast<long long>(simulation.late_steps()), window.picture_rate());
+              static_cast<long long>(simulation.late_steps()), window.pictures().rate());
 }
 
 volatile std::sig_atomic_t signal_number = 0;
@@ -132,7 +110,6 @@ void show_scene(const ViewOptions& options) {
   ViewWindow window(scene, *simulation, options, screens ? &*screens : nullptr);
   take_signals();
   if (screens) screens->wait_for_screens();
-  const std::clock_t start = std::clock();
   const Stopwatch since_start;
   simulation->begin();
   window.run(signal_number);
@@ -142,7 +119,7 @@ void show_scene(const ViewOptions& options) {
   write_results(*simulation, options);
   if (!options.screenshot.empty() && window.has_picture()) window.save_picture(options.screenshot);
   if (options.timing) {
-    print_timing(*simulation, window, start, wall);
+    print_timing(*simulation, window, wall);
     if (!window.delay().text().empty()) std::puts(window.delay().text().c_str());
     if (screens) std::puts(screens->status().c_str());
   }
@@ -152,10 +129,13 @@ void show_scene(const ViewOptions& options) {
 
 void run(const ViewOptions& options) {
   if (!options.make_keys.empty()) return write_screen_keys(options.make_keys);
-  if (options.tracker) return send_head(options);
+  if (options.tracker == "-")
+    return send_head(options, signal_number);  // a signal ends its reading
+  const bool is_scene = options.join.empty();
+  if (!is_scene) take_signals();
+  if (!options.tracker.empty()) return send_head(options, signal_number);
   check_display();
-  if (options.join.empty()) return show_scene(options);
-  take_signals();
+  if (is_scene) return show_scene(options);
   show_screen(options, signal_number);
 }
 

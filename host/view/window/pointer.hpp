@@ -2,14 +2,10 @@
 /// Pointer: from pixels to the scene and back.
 #pragma once
 #include <vtkRenderer.h>
-#include <tetwarp/volume.hpp>
+
+#include "host/view/pick.hpp"
 
 namespace tetwarp::view {
-
-/// A half-line from the eye.
-struct EyeRay {
-  Point3 origin{}, direction{};
-};
 
 /// Pixels count from the lower left; the place of one is its middle.
 class Pointer {
@@ -21,6 +17,7 @@ class Pointer {
   Point3 world_of(int x, int y, double depth) const;
   double depth_of(const Point3& point) const;
   EyeRay ray_at(int x, int y) const;
+  EyeRay ray_at(const int* place) const { return ray_at(place[0], place[1]); }
 
  private:
   vtkRenderer* renderer_;

@@ -21,6 +21,7 @@
 namespace tetwarp::view {
 namespace {
 constexpr Rgb contact_color{0.85, 0.10, 0.45}, held_color{0.10, 0.55, 0.20};
+constexpr Rgb ray_color{0.10, 0.35, 0.90};
 constexpr double longest_arrow = 0.15, ball_radius = 0.003;  // of the size of the scene
 constexpr int plane_squares = 24;
 constexpr double plane_size = 4;  // of the size of the scene
@@ -53,6 +54,7 @@ SceneActors::SceneActors(const ViewScene& scene, const LiveFrame& frame, vtkRend
   }
   add_arrows(contacts_, contact_color, renderer);
   add_arrows(held_, held_color, renderer);
+  add_rays(renderer);
 }
 
 /// A checker board around the foot of the scene's center.
@@ -120,14 +122,35 @@ void SceneActors::add_arrows(ArrowActors& of, const Rgb& color, vtkRenderer* ren
   }
 }
 
+void SceneActors::add_rays(vtkRenderer* renderer) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(rays_);
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(ray_color[0], ray_color[1], ray_color[2]);
+  actor->GetProperty()->SetLineWidth(2);
+  actor->GetProperty()->LightingOff();
+  renderer->AddActor(actor);
+}
+
+void SceneActors::show_rays(const std::vector<WandRay>& rays) {
+  vtkNew<vtkPoints> ends;
+  vtkNew<vtkCellArray> lines;
+  for (const auto& [from, to] : rays) {
+    const vtkIdType first = ends->InsertNextPoint(from.data());
+    lines->InsertNextCell({first, ends->InsertNextPoint(to.data())});
+  }
+  rays_->SetPoints(ends);
+  rays_->SetLines(lines);
+}
+
 /// Points without a value have the color of their body.
 void SceneActors::color_bodies(const LiveFrame& frame) {
-  range_.include(frame.quantity, frame.values);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::vector<Rgb> colors;
     if (b < frame.values.size()) {
       for (const float value : frame.values[b]) {
-        colors.push_back(std::isnan(value) ? color_of(b) : value_color(range_.share(value)));
+        colors.push_back(std::isnan(value) ? color_of(b) : value_color(frame.range.share(value)));
       }
     }
     bodies_[b].set_colors(colors);

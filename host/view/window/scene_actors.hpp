@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <deque>
 #include <utility>
+#include <vector>
 
 #include <vtkActor.h>
 #include <vtkDoubleArray.h>
@@ -13,8 +14,8 @@
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
 
+#include "host/view/hand/room_place.hpp"
 #include "host/view/live_frame.hpp"
-#include "host/view/look/value_colors.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/window/surface_actor.hpp"
 
@@ -37,8 +38,7 @@ class SceneActors {
 
   void show(const LiveFrame& frame);
   void show_contacts(bool are_shown);
-  /// Of the values that were shown so far.
-  const ValueRange& range() const { return range_; }
+  void show_rays(const std::vector<WandRay>& rays);
   /// Whether the surface of a body is drawn.
   void show_body(std::size_t body, bool is_shown);
 
@@ -46,13 +46,14 @@ class SceneActors {
   void add_plane(const DrawnPlane& plane, vtkRenderer* renderer);
   void color_bodies(const LiveFrame& frame);
   void add_arrows(ArrowActors& of, const Rgb& color, vtkRenderer* renderer);
+  void add_rays(vtkRenderer* renderer);
 
   const ViewScene& scene_;
   std::deque<SurfaceActor> bodies_;
   std::deque<std::pair<std::size_t, SurfaceActor>> obstacles_;  ///< number in the scene, mesh
   ArrowActors contacts_, held_;
   double largest_force_ = 0;  ///< of a contact so far [N]
-  ValueRange range_;
+  vtkNew<vtkPolyData> rays_;
 };
 
 }  // namespace tetwarp::view

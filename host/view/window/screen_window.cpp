@@ -240,6 +240,7 @@ void ScreenWindow::show_state(const FrameMessage& message) {
     state_bytes_ = message.state;
   }
   actors_->show_contacts(message.look.shows_contacts);
+  actors_->show_rays(message.look.rays);
   for (const VolumeBody& volume : scene_.volumes) {
     actors_->show_body(volume.body, look == VolumeLook::surfaces);
   }

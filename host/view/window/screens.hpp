@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/view/live_simulation.hpp"
+#include "host/view/screens/room.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/window/volume_actors.hpp"
 
@@ -23,6 +24,7 @@ struct MasterView {
   SliceLook slices;
   std::optional<Cut> cut;
   std::vector<ColorPoint> curve;  ///< as VolumeActors::set_curve(); empty: nobody changed it
+  std::vector<WandRay> rays;      ///< of wands
 };
 
 /// The master's end: serves all screens, and starts those of this machine.
@@ -40,6 +42,7 @@ class MasterScreens {
 
   /// Never waits.
   void set_view(const MasterView& view);
+  const Room& room() const;
   /// A line about the screens.
   std::string status() const;
 
@@ -51,8 +54,8 @@ class MasterScreens {
 /// Draws a screen until the master, a signal or the user ends it.
 void show_screen(const ViewOptions& options, const volatile std::sig_atomic_t& is_interrupted);
 
-/// Sends the head poses that it reads from the standard input to a master.
-void send_head(const ViewOptions& options);
+/// Sends head poses of ViewOptions::tracker to a master, until they or a signal end it.
+void send_head(const ViewOptions& options, const volatile std::sig_atomic_t& is_interrupted);
 
 /// Writes NAME.key for a master and NAME_screen.key for its screens.
 void write_screen_keys(const std::string& name);

@@ -21,13 +21,16 @@ MasterScreens::MasterScreens(LiveSimulation&, const ViewScene&, const ViewOption
 MasterScreens::~MasterScreens() = default;
 void MasterScreens::wait_for_screens() {}
 void MasterScreens::set_view(const MasterView&) {}
+const Room& MasterScreens::room() const {
+  fail();
+}
 std::string MasterScreens::status() const {
   return {};
 }
 void show_screen(const ViewOptions&, const volatile std::sig_atomic_t&) {
   fail();
 }
-void send_head(const ViewOptions&) {
+void send_head(const ViewOptions&, const volatile std::sig_atomic_t&) {
   fail();
 }
 void write_screen_keys(const std::string&) {

@@ -24,6 +24,7 @@
 #include "host/view/link/sockets.hpp"
 #include "host/view/screens/room_file.hpp"
 #include "host/view/screens/scene_sharer.hpp"
+#include "host/view/window/head_sender.hpp"
 #include "host/view/window/screen_window.hpp"
 #include "host/view/window/screens.hpp"
 #include "io/files/finished_file.hpp"
@@ -62,23 +63,6 @@ std::string beside(const std::string& file, const std::string& word) {
   return path.parent_path() / (path.stem().string() + "_" + word + path.extension().string());
 }
 
-/// A line of a tracker.
-std::optional<HeadPose> head_of(const std::string& line) {
-  std::istringstream words(line);
-  std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
-  if (!words.eof() || (numbers.size() != 3 && numbers.size() != 7)) return std::nullopt;
-  HeadPose head;
-  std::copy_n(numbers.begin(), 3, head.position.begin());
-  if (numbers.size() == 3) return head;
-  std::copy_n(numbers.begin() + 3, 4, head.rotation.begin());
-  const auto& [w, x, y, z] = head.rotation;
-  const double size = std::sqrt(w * w + x * x + y * y + z * z);
-  if (!(size > 0)) return std::nullopt;
-  for (double& part : head.rotation) part /= size;
-  return head;
-}
-
 /// Strings as execve() takes them; they must outlive the list.
 std::vector<char*> pointers_of(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -88,7 +72,7 @@ std::vector<char*> pointers_of(std::vector<std::string>& texts) {
 }
 
 /// This program again, which ends when this process does.
-pid_t start_screen(const ViewOptions& options, const std::string& display) {
+pid_t start_child(const ViewOptions& options, const std::string& display) {
   std::vector<std::string> words = words_of(options), variables;
   words.insert(words.begin(), "tetwarp-view");
   for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -100,7 +84,8 @@ pid_t start_screen(const ViewOptions& options, const std::string& display) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
   const pid_t parent = getpid(), child = fork();
   if (child < 0) {
-    throw std::runtime_error("a screen cannot be started: " + std::string(strerror(errno)));
+    throw std::runtime_error("a screen or tracker cannot be started: " +
+                             std::string(strerror(errno)));
   }
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -112,7 +97,7 @@ pid_t start_screen(const ViewOptions& options, const std::string& display) {
 }
 
 /// Has a process end by itself, and ends it if it does not.
-void end_screen(pid_t child) {
+void end_child(pid_t child) {
   kill(child, SIGTERM);
   const auto latest = std::chrono::steady_clock::now() + end_wait;
   while (waitpid(child, nullptr, WNOHANG) == 0) {
@@ -145,13 +130,15 @@ class MasterScreens::Impl {
       if (!screen.host.empty()) continue;
       of_screen.screen = screen.name;
       of_screen.screenshot = beside(options.screenshot, screen.name);
-      children_.push_back(start_screen(of_screen, screen.display));
+      children_.push_back(start_child(of_screen, screen.display));
     }
+    started_screens_ = static_cast<std::int64_t>(children_.size());
+    if (!room_.tracker.empty()) children_.push_back(start_child(tracker_options(of_screen), ""));
   }
   ~Impl() {
     simulation_.end();  // its thread uses the server
     server_.reset();
-    for (const pid_t child : children_) end_screen(child);
+    for (const pid_t child : children_) end_child(child);
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -163,7 +150,7 @@ class MasterScreens::Impl {
       waitid(P_PID, static_cast<id_t>(child), &how, WEXITED | WNOHANG | WNOWAIT);
       return how.si_pid == child;
     };
-    while (server_->counts().screens < static_cast<std::int64_t>(children_.size()) &&
+    while (server_->counts().screens < started_screens_ &&
            std::ranges::none_of(children_, has_ended) && watch.seconds() < start_seconds) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
@@ -172,11 +159,20 @@ class MasterScreens::Impl {
   ScreenServer& server() { return *server_; }
 
  private:
+  ViewOptions tracker_options(const ViewOptions& of_screen) const {
+    ViewOptions options;
+    options.join = of_screen.join;
+    options.key = of_screen.key;
+    options.tracker = room_.tracker;
+    return options;
+  }
+
   LiveSimulation& simulation_;
   Room room_;
   SceneSharer sharer_;
   std::optional<ScreenServer> server_;
   std::vector<pid_t> children_;
+  std::int64_t started_screens_ = 0;  ///< of the children
 };
 
 MasterScreens::MasterScreens(LiveSimulation& simulation,
@@ -193,8 +189,13 @@ void MasterScreens::wait_for_screens() {
 void MasterScreens::set_view(const MasterView& view) {
   const RoomPlace place =
       place_of_camera(impl_->room(), view.camera.eye, view.camera.target, view.camera.up);
-  impl_->server().set_view(place, {static_cast<std::uint8_t>(view.volumes), view.shows_contacts,
-                                   view.level, view.width, view.slices, view.cut, view.curve});
+  impl_->server().set_view(
+      place, {static_cast<std::uint8_t>(view.volumes), view.shows_contacts, view.level, view.width,
+              view.slices, view.cut, view.curve, view.rays});
+}
+
+const Room& MasterScreens::room() const {
+  return impl_->room();
 }
 
 std::string MasterScreens::status() const {
@@ -209,6 +210,7 @@ std::string MasterScreens::status() const {
   }
   if (counts.late > 0) text << "   " << counts.late << " late";
   if (counts.lost > 0) text << "   " << counts.lost << " lost";
+  if (counts.has_lost_head) text << "   the head is not tracked";
   if (counts.malformed > 0) text << "   " << counts.malformed << " bad messages";
   return text.str();
 }
@@ -218,22 +220,13 @@ void show_screen(const ViewOptions& options, const volatile std::sig_atomic_t& i
   window.run(is_interrupted);
 }
 
-void send_head(const ViewOptions& options) {
+void send_head(const ViewOptions& options, const volatile std::sig_atomic_t& is_interrupted) {
   ScreenLink link(options.join, keys_of(options, false));
   if (!link.wait_for_master(start_seconds)) {
     throw std::runtime_error("no master at " + options.join);
   }
-  std::string line;
-  for (std::int64_t number = 1; std::getline(std::cin, line); ++number) {
-    const std::optional<HeadPose> head = head_of(line);
-    if (!head) {
-      throw std::runtime_error("standard input: line " + std::to_string(number) +
-                               " is not x y z or x y z qw qx qy qz");
-    }
-    link.send(HeadMessage{*head});
-    while (link.receive(0)) {
-    }
-  }
+  if (options.tracker == "-") return send_head_lines(std::cin, link);
+  send_tracked_head(options.tracker, link, is_interrupted);
 }
 
 void write_screen_keys(const std::string& name) {

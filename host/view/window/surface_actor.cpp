@@ -33,6 +33,11 @@ vtkNew<vtkPolyData> mesh_of(const std::vector<Point3>& points, const Triangles& 
   mesh->GetPointData()->AddArray(numbers);
   return mesh;
 }
+/// @returns where the next one goes
+float* write(const Point3& x, float* to) {
+  for (const double part : x) *to++ = static_cast<float>(part);
+  return to;
+}
 }  // namespace
 
 SurfaceActor::SurfaceActor(const std::vector<Point3>& points,
@@ -56,6 +61,7 @@ SurfaceActor::SurfaceActor(const std::vector<Point3>& points,
     auto& triangle = triangles_.emplace_back();
     for (std::size_t n = 0; n < 3; ++n) triangle[n] = static_cast<std::int32_t>(nodes[n]);
   }
+  places_->SetDataTypeToFloat();
   places_->SetNumberOfPoints(drawn->GetNumberOfPoints());
   normals_->SetNumberOfComponents(3);
   normals_->SetNumberOfTuples(drawn->GetNumberOfPoints());
@@ -79,10 +85,10 @@ SurfaceActor::SurfaceActor(const std::vector<Point3>& points,
 }
 
 void SurfaceActor::move(const std::vector<Point3>& points) {
-  for (std::size_t p = 0; p < point_of_.size(); ++p) {
-    places_->SetPoint(static_cast<vtkIdType>(p),
-                      points[static_cast<std::size_t>(point_of_[p])].data());
-  }
+  if (points == points_) return;
+  points_ = points;
+  float* to = static_cast<float*>(places_->GetVoidPointer(0));
+  for (const std::int32_t point : point_of_) to = write(at(points_, point), to);
   compute_normals();
   places_->Modified();
   normals_->Modified();
@@ -102,18 +108,19 @@ void SurfaceActor::set_colors(const std::vector<Rgb>& colors) {
 
 void SurfaceActor::compute_normals() {
   std::vector<Point3> sums(point_of_.size(), {0, 0, 0});
-  for (const auto& triangle : triangles_) {
-    Point3 corner[3];
-    for (std::size_t c = 0; c < 3; ++c) places_->GetPoint(triangle[c], corner[c].data());
-    const Point3 normal = cross(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
-    for (const std::int32_t point : triangle) {
+  const auto corner = [&](std::int32_t drawn) -> const Point3& {
+    return at(points_, at(point_of_, drawn));
+  };
+  for (const auto& [a, b, c] : triangles_) {
+    const Point3& first = corner(a);
+    const Point3 normal = cross(minus(corner(b), first), minus(corner(c), first));
+    for (const std::int32_t point : {a, b, c}) {
       Point3& sum = sums[static_cast<std::size_t>(point)];
       sum = plus(sum, normal);
     }
   }
-  for (std::size_t p = 0; p < sums.size(); ++p) {
-    normals_->SetTuple(static_cast<vtkIdType>(p), unit(sums[p]).data());
-  }
+  float* to = normals_->GetPointer(0);
+  for (const Point3& sum : sums) to = write(unit(sum), to);
 }
 
 }  // namespace tetwarp::view

@@ -21,6 +21,7 @@ class SurfaceActor {
  public:
   SurfaceActor(const std::vector<Point3>& points, const Triangles& triangles, const Rgb& color);
 
+  /// Does nothing where nothing has moved.
   /// @param points  as many as at the start [world]
   void move(const std::vector<Point3>& points);
   /// @param colors  of the points at the start; empty: the surface has its own color
@@ -31,8 +32,9 @@ class SurfaceActor {
   void compute_normals();
 
   std::vector<std::int32_t>
-      point_of_;         ///< [drawn points]: points at creases are drawn several times
-  Triangles triangles_;  ///< of drawn points
+      point_of_;                ///< [drawn points]: points at creases are drawn several times
+  Triangles triangles_;         ///< of drawn points
+  std::vector<Point3> points_;  ///< where they are now, each once
   vtkNew<vtkPoints> places_;
   vtkNew<vtkFloatArray> normals_;
   vtkNew<vtkUnsignedCharArray> colors_;

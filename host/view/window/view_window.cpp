@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "host/base/point3.hpp"
+#include "host/view/devices/open_devices.hpp"
 #include "host/view/overlay_text.hpp"
 #include "host/view/window/window_camera.hpp"
 #include "host/view/window/window_picture.hpp"
@@ -23,6 +24,14 @@ constexpr unsigned long timer_interval = 15;  // [ms]
 constexpr double resting_seconds = 0.4;       // until rays become finer
 constexpr double cut_step = 0.02;             // of the size of the scene
 constexpr double window_pixels = 400;         // by which the mouse moves the window by its width
+
+/// Without screens the window is one, at 0.6 m from an observer at the origin.
+RoomPlace room_place(const MasterScreens* screens, const Camera& camera) {
+  Room own;
+  own.focus = 0.6;
+  return place_of_camera(screens != nullptr ? screens->room() : own, camera.eye, camera.target,
+                         camera.up);
+}
 }  // namespace
 
 ViewWindow::ViewWindow(const ViewScene& scene,
@@ -33,7 +42,9 @@ ViewWindow::ViewWindow(const ViewScene& scene,
       simulation_(simulation),
       options_(options),
       screens_(screens),
-      quantity_(quantity_of(options.colors)) {
+      quantity_(quantity_of(options.colors)),
+      pictures_(simulation),
+      hand_(scene, simulation, [this] { return cut_plane_.cut(); }) {
   set_up_window();
   set_up_mouse();
   if (!options_.devices.empty()) set_up_devices();
@@ -54,8 +65,8 @@ void ViewWindow::set_up_window() {
 void ViewWindow::set_up_mouse() {
   MouseActions actions;
   actions.grab = [this](int x, int y) { return may_grab_ && grab(x, y); };
-  actions.pull = [this](int x, int y) { pull(x, y); };
-  actions.release = [this] { simulation_.give({.kind = OrderKind::release}); };
+  actions.pull = [this](int x, int y) { hand_.pull(pointer_.world_of(x, y, grab_depth_)); };
+  actions.release = [this] { hand_.release(); };
   actions.turn_window = [this](int x, int y) { return turn_window(x, y); };
   actions.take_point = [this](int x, int y, bool tints) {
     return curve_ && curve_->press(x, y, tints);
@@ -73,17 +84,27 @@ void ViewWindow::set_up_mouse() {
 
 void ViewWindow::set_up_devices() {
   HandActions actions;
-  actions.grab = [this](Point3& point) {
-    const int* const size = window_->GetSize();
-    if (!grab(size[0] / 2, size[1] / 2)) return false;
-    point = pointer_.world_of(size[0] / 2, size[1] / 2, grab_depth_);
-    return true;
+  actions.meet = [this](const EyeRay& ray) { return hand_.meet(ray); };
+  actions.grab = [this](const Pick& point) { hand_.grab(point); };
+  actions.pull = [this](const Point3& target) { hand_.pull(target); };
+  actions.release = [this] { hand_.release(); };
+  actions.probe = [this](const EyeRay& ray) {
+    note(hand_.probe(ray));
+    draw();
   };
-  actions.pull = [this](const Point3& target) {
-    simulation_.give({.kind = OrderKind::pull, .point = target});
-  };
-  actions.release = [this] { simulation_.give({.kind = OrderKind::release}); };
-  devices_.emplace(options_.devices, std::move(actions));
+  devices_.emplace(open_devices(options_.devices), std::move(actions));
+}
+
+/// @returns whether there is something new to draw
+bool ViewWindow::update_devices() {
+  if (!devices_) return false;
+  Camera camera = camera_of(renderer_->GetActiveCamera());
+  const int* const size = window_->GetSize();
+  const EyeRay middle = pointer_.ray_at(size[0] / 2, size[1] / 2);
+  const bool has_moved = devices_->update(camera, middle, room_place(screens_, camera));
+  if (has_moved) set_camera(camera, renderer_->GetActiveCamera());
+  if (devices_->has_news()) actors_->show_rays(devices_->rays());
+  return has_moved || devices_->has_news();
 }
 
 void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
@@ -117,10 +138,9 @@ void ViewWindow::run(const volatile std::sig_atomic_t& is_interrupted) {
   tell_screens();
   window_->SetWindowName(("tetwarp: " + scene_.name).c_str());  // now it takes events
   if (!options_.film.empty()) film_.require(options_.film);
-  const Stopwatch since_first;
-  const std::int64_t first_count = picture_count_;
+  pictures_.begin();
   events_->Start();
-  picture_rate_ = static_cast<double>(picture_count_ - first_count) / since_first.seconds();
+  pictures_.end();
   tell_screens();  // what the last events have changed
   attempt([this] { film_.end(); });
 }
@@ -137,11 +157,12 @@ void ViewWindow::tell_screens() {
   view.width = width_;
   view.cut = cut_plane_.cut();
   if (curve_) view.curve = curve_->editor()->edited();
+  if (devices_) view.rays = devices_->rays();
   screens_->set_view(view);
 }
 
 void ViewWindow::on_timer() {
-  const bool has_moved = devices_ && devices_->update(renderer_->GetActiveCamera());
+  const bool has_changed = update_devices();
   tell_screens();
   if (simulation_.frames().take()) {
     LiveFrame& frame = simulation_.frames().front();
@@ -150,7 +171,7 @@ void ViewWindow::on_timer() {
       volumes_->show(frame);
     }
     draw();
-  } else if (has_moved) {
+  } else if (has_changed) {
     draw();
   }
   if (resting_.seconds() > resting_seconds) refine();
@@ -185,9 +206,7 @@ void ViewWindow::set_up_drawing() {
 }
 
 void ViewWindow::note_picture(double seconds) {
-  std::erase_if(drawn_, [](const Stopwatch& since) { return since.seconds() > 1; });
-  drawn_.emplace_back();
-  ++picture_count_;
+  pictures_.drew();
   attempt([this] { film_.note(window_); });
   if (is_refined_) return;
   resting_ = Stopwatch();
@@ -214,7 +233,8 @@ void ViewWindow::draw() {
   is_refined_ = false;
   volumes_->set_rays(rays_.moving());
   texts_.set(overlay());
-  legend_->show(simulation_.frames().front().quantity, actors_->range());
+  const LiveFrame& frame = simulation_.frames().front();
+  legend_->show(frame.quantity, frame.range);
   if (curve_) curve_->update();
   renderer_->ResetCameraClippingRange();
   window_->Render();
@@ -226,9 +246,10 @@ void ViewWindow::note(const std::string& text) {
 }
 
 std::string ViewWindow::overlay() {
-  std::string text = overlay_text(scene_, simulation_.frames().front(), drawn_.size());
+  std::string text = overlay_text(scene_, simulation_.frames().front(), pictures_.last_second());
   if (screens_ != nullptr) text += "\n" + screens_->status();
   if (film_.is_running()) text += "\nfilm " + film_.path();
+  if (devices_ && !devices_->problems().empty()) text += "\n" + devices_->problems();
   if (!note_.empty()) text += "\n" + note_;
   return text;
 }
@@ -288,7 +309,7 @@ void ViewWindow::act(const std::string& key) {
   if (key == "period") simulation_.give({.kind = OrderKind::step});
   if (key == "BackSpace") simulation_.give({.kind = OrderKind::restart});
   if (key == "g") turn_grabbing();
-  if (key == "i") probe();
+  if (key == "i") note(hand_.probe(pointer_.ray_at(events_->GetEventPosition())));
   if (key == "x") cut_plane_.turn(scene_.center, renderer_);
   if (key == "Next") cut_plane_.move(cut_step * scene_.size, renderer_);
   if (key == "Prior") cut_plane_.move(-cut_step * scene_.size, renderer_);
@@ -306,6 +327,7 @@ void ViewWindow::act(const std::string& key) {
   if (key == "k") color_surfaces();
   if (key == "m") turn_film();
   if (key == "o" && curve_) curve_->turn();
+  if (key == "F11") full_screen_.turn();
   if (key == "F12") save_next_picture();
 }
 
@@ -328,20 +350,6 @@ void ViewWindow::turn_grabbing() {
   note(may_grab_ ? "left pulls bodies" : "left turns the camera, also on bodies; g: pulls");
 }
 
-std::optional<Pick> ViewWindow::pick_at(const EyeRay& ray) {
-  return pick(simulation_.frames().front().points, scene_.triangles, ray.origin, ray.direction,
-              cut_plane_.cut());
-}
-
-/// Notes what is under the pointer.
-void ViewWindow::probe() {
-  const int* const place = events_->GetEventPosition();
-  const EyeRay ray = pointer_.ray_at(place[0], place[1]);
-  const auto found = pick_at(ray);
-  if (!found) return note("nothing is there");
-  note(probe_text(scene_, simulation_.frames().front(), *found, ray.direction));
-}
-
 bool ViewWindow::move_slice(int x, int y, int steps) {
   if (look_ != VolumeLook::slices) return false;
   const EyeRay ray = pointer_.ray_at(x, y);
@@ -358,15 +366,11 @@ bool ViewWindow::move_slice(int x, int y, int steps) {
 }
 
 bool ViewWindow::grab(int x, int y) {
-  const auto found = pick_at(pointer_.ray_at(x, y));
+  const auto found = hand_.meet(pointer_.ray_at(x, y));
   if (!found) return false;
   grab_depth_ = pointer_.depth_of(found->point);
-  simulation_.give({.kind = OrderKind::grab, .body = found->body, .point = found->point});
+  hand_.grab(*found);
   return true;
-}
-
-void ViewWindow::pull(int x, int y) {
-  simulation_.give({.kind = OrderKind::pull, .point = pointer_.world_of(x, y, grab_depth_)});
 }
 
 bool ViewWindow::turn_window(int x, int y) {

@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
@@ -14,12 +13,15 @@
 #include <vtkRenderer.h>
 
 #include "host/base/stopwatch.hpp"
+#include "host/view/hand/device_hand.hpp"
+#include "host/view/hand/scene_hand.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/view_scene.hpp"
 #include "host/view/window/curve_panel.hpp"
 #include "host/view/window/cut_plane.hpp"
-#include "host/view/window/device_hand.hpp"
+#include "host/view/window/full_screen.hpp"
 #include "host/view/window/mouse_style.hpp"
+#include "host/view/window/picture_meter.hpp"
 #include "host/view/window/pointer.hpp"
 #include "host/view/window/scene_actors.hpp"
 #include "host/view/window/screens.hpp"
@@ -47,9 +49,7 @@ class ViewWindow {
   bool has_picture() const { return volumes_.has_value(); }
   /// Writes what is shown. @pre has_picture() @throws IoError
   void save_picture(const std::string& path);
-  std::int64_t picture_count() const { return picture_count_; }
-  /// Pictures a second of wall time, from the first one on.
-  double picture_rate() const { return picture_rate_; }
+  const PictureMeter& pictures() const { return pictures_; }
   const InputDelay& delay() const { return delay_; }
   /// What ended the simulation, or empty.
   std::string failure();
@@ -60,6 +60,7 @@ class ViewWindow {
   void set_up_window();
   void set_up_mouse();
   void set_up_devices();
+  bool update_devices();
   void on_timer();
   void draw();
   void set_up_drawing();
@@ -71,11 +72,8 @@ class ViewWindow {
   void save_next_picture();
   bool let_go();
   void turn_grabbing();
-  std::optional<Pick> pick_at(const EyeRay& ray);
   bool grab(int x, int y);
-  void probe();
   bool move_slice(int x, int y, int steps);
-  void pull(int x, int y);
   bool turn_window(int x, int y);
   void set_look(VolumeLook look);
   void note(const std::string& text);
@@ -105,8 +103,7 @@ class ViewWindow {
   RayQuality rays_;
   Stopwatch drawing_;  ///< since a picture was begun
   Stopwatch resting_;  ///< since the last picture of something that moved
-  std::int64_t picture_count_ = 0;
-  double picture_rate_ = 0;
+  PictureMeter pictures_;
   InputDelay delay_;
   double level_ = 0, width_ = 1;  ///< of the window of volumes
   double grab_depth_ = 0;         ///< of the point that is held, as on the display
@@ -114,10 +111,11 @@ class ViewWindow {
   std::optional<ValueLegend> legend_;
   std::optional<CurvePanel> curve_;
   WindowFilm film_;
-  std::optional<DeviceHand> devices_;
   CutPlane cut_plane_;
+  SceneHand hand_;
+  std::optional<DeviceHand> devices_;
+  FullScreen full_screen_{window_};
   const volatile std::sig_atomic_t* is_interrupted_ = nullptr;
-  std::vector<Stopwatch> drawn_;  ///< since each picture of the last second
 };
 
 }  // namespace tetwarp::view

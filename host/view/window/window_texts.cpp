@@ -14,7 +14,7 @@ constexpr const char* help_text =
     "space pause   . step   Backspace restart   c contacts\n"
     "v volume, slices, surfaces   n one slice alone   o curve of volumes\n"
     "x cut plane   Page Up, Page Down move it   i probe   k colors\n"
-    "F12 picture   m film   h help   Escape let go, quit";
+    "F11 full screen   F12 picture   m film   h help   Escape let go, quit";
 
 void style_text(vtkTextActor* text, int size) {
   text->GetTextProperty()->SetFontSize(size);

@@ -1,0 +1,71 @@
+/// @file device_hand.hpp
+/// DeviceHand: devices that move the camera, or what they hold.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/make.hpp>
+
+#include "host/view/devices/input_device.hpp"
+#include "host/view/hand/room_place.hpp"
+#include "host/view/pick.hpp"
+
+namespace tetwarp::view {
+
+/// What the window does for a device; as SceneHand.
+struct HandActions {
+  std::function<std::optional<Pick>(const EyeRay& ray)> meet;
+  std::function<void(const Pick& point)> grab;
+  std::function<void(const Point3& target)> pull;
+  std::function<void()> release;
+  std::function<void(const EyeRay& ray)> probe;
+};
+
+/// A button takes what is in the middle of the window, or what a tracked device points at. While
+/// the button is held, that goes as the device does: a tracked one carries it like a stick.
+class DeviceHand {
+ public:
+  DeviceHand(std::vector<std::unique_ptr<InputDevice>> devices, HandActions actions);
+
+  /// Reads all devices.
+  /// @param camera  that the devices move
+  /// @param middle  what the middle of the window shows
+  /// @param room    of tracked devices
+  /// @returns whether the camera has moved
+  bool update(Camera& camera, const EyeRay& middle, const RoomPlace& room);
+  /// What the devices hold is let go, also while their buttons are held. @returns whether there was
+  /// anything
+  bool let_go();
+  /// Whether a simulated device has more to say.
+  bool is_simulating() const;
+  /// Whether update() has changed rays or problems.
+  bool has_news() const { return has_news_; }
+  /// Of tracked devices, as of update().
+  const std::vector<WandRay>& rays() const { return rays_; }
+  /// A line for each device that says nothing, as of update().
+  const std::string& problems() const { return problems_; }
+
+ private:
+  struct Held {
+    std::unique_ptr<InputDevice> device;
+    bool grabs = false, probes = false;  ///< its buttons are down
+    bool holds = false;                  ///< and something is held
+    Point3 target{};                     ///< of what is held [world]
+    Point3 local{};                      ///< and where that is for a tracked device
+  };
+  bool act(Held& hand, const DeviceSpan& span, Camera& camera, const EyeRay& middle);
+  void use_buttons(Held& hand, const DeviceState& state, const EyeRay& ray);
+  void carry(Held& hand, const Point3& target);
+
+  std::vector<Held> hands_;
+  HandActions actions_;
+  RoomPlace room_;
+  std::vector<WandRay> rays_;
+  std::string problems_;
+  bool has_news_ = false;
+};
+
+}  // namespace tetwarp::view

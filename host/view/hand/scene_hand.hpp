@@ -1,0 +1,38 @@
+/// @file scene_hand.hpp
+/// SceneHand: what mouse and devices do to what a ray meets.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "host/view/live_simulation.hpp"
+#include "host/view/pick.hpp"
+#include "host/view/view_scene.hpp"
+
+namespace tetwarp::view {
+
+/// Of the thread that takes the frames of the simulation.
+class SceneHand {
+ public:
+  /// @param scene, simulation  kept by the caller
+  /// @param cut  what hides bodies now
+  SceneHand(const ViewScene& scene,
+            LiveSimulation& simulation,
+            std::function<std::optional<Cut>()> cut);
+
+  /// What a ray meets first in the newest frame.
+  std::optional<Pick> meet(const EyeRay& ray);
+  void grab(const Pick& point);
+  /// @param target  where the point that was grabbed is to be
+  void pull(const Point3& target);
+  void release();
+  /// What is where the ray meets something.
+  std::string probe(const EyeRay& ray);
+
+ private:
+  const ViewScene& scene_;
+  LiveSimulation& simulation_;
+  std::function<std::optional<Cut>()> cut_;
+};
+
+}  // namespace tetwarp::view
