@@ -67,7 +67,9 @@ install_python_peers() {
   # Where a module of venv is missing, it leaves a folder without pip.
   [[ -x $folder/python_peers/bin/pip ]] || python3 -m venv "$folder/python_peers" || return
   "$folder/python_peers/bin/pip" install --quiet --no-compile \
-    -r "$root/bench/peers/python.txt"
+    -r "$root/bench/peers/python.txt" &&
+    "$folder/python_peers/bin/pip" install --quiet --no-compile --no-deps \
+      -r "$root/bench/peers/python_alone.txt"
 }
 
 bench_warp_python() {
@@ -76,9 +78,14 @@ bench_warp_python() {
     echo "missing: $folder/python_peers; the warp from Python is left out, --install installs it"
     return 0
   fi
-  cmake --build "$folder" --target tetwarp_python || return
+  cmake --build "$folder" --target tetwarp_python tetwarp_command || return
   PYTHONPATH=$folder/python "$python" "$program" all "$folder/warp_python" "$results-python.json" &&
-    "$python" "$program" table "$results-python.json" >"$folder/warp_python.md"
+    "$python" "$program" table "$results-python.json" >"$folder/warp_python.md" || return
+  program=$root/bench/peers/warp_memory.py
+  PYTHONPATH=$folder/python "$python" "$program" all "$folder/tetwarp" "$folder/warp_memory" \
+    "$results-python.json" && "$python" "$program" table "$results-python.json" >>"$folder/warp_python.md" ||
+    echo "warp_memory.py failed"
+  rm -rf "$folder/warp_memory"  # 6 GB
 }
 
 # One cantilever in several simulators, on one thread; a program that is missing is left out.

@@ -39,6 +39,7 @@ add_executable(tetwarp_bench
   bench/warp/series_rows.cpp
   bench/warp/step_cases.cpp
   bench/warp/step_rows.cpp
+  bench/warp/transform_rows.cpp
   bench/warp/truth.cpp
   bench/warp/warp_job.cpp
   bench/warp/workloads.cpp

@@ -20,12 +20,13 @@ tetwarp_sources(tetwarp_command host/cli/simulate
 tetwarp_sources(tetwarp_command host/cli/tools
   chart.cpp cmd_compose.cpp cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp
   cmd_invert.cpp cmd_mesh.cpp cmd_plot.cpp cmd_points.cpp cmd_render.cpp displacement.cpp
-  field_inverse.cpp mesh_options.cpp read_array.cpp transform_chain.cpp)
+  mesh_options.cpp read_array.cpp)
 tetwarp_sources(tetwarp_command host/cli/view
   cmd_view.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
-  batch.cpp batch_file.cpp batch_list.cpp batch_order.cpp cmd_warp.cpp job_process.cpp
-  job_share.cpp transform_job.cpp transform_run.cpp warp_job.cpp)
+  batch.cpp batch_file.cpp batch_list.cpp batch_order.cpp cmd_warp.cpp field_inverse.cpp
+  image_cells.cpp job_process.cpp job_share.cpp position_bins.cpp transform_chain.cpp
+  transform_job.cpp transform_run.cpp warp_job.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp/volumes
   block_warper.cpp part_exchange.cpp part_queue.cpp report_exchange.cpp series_in_parts.cpp
   step_writer.cpp volume_blocks.cpp volume_run.cpp volume_sources.cpp volume_steps.cpp

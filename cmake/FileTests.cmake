@@ -157,7 +157,9 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_field_memory.cpp
   tests/cli/test_cli_refusals.cpp
   tests/cli/test_cli_steps.cpp
-  host/cli/tools/field_inverse.cpp
+  host/cli/warp/field_inverse.cpp
+  host/cli/warp/image_cells.cpp
+  host/cli/warp/position_bins.cpp
   tests/cli/test_field_inverse.cpp)
 target_link_libraries(tetwarp_cli_tests PRIVATE $<LINK_ONLY:fmt::fmt>)  # of chart.cpp
 tetwarp_discover(tetwarp_cli_tests cli)

@@ -53,6 +53,7 @@ void resample_arrays(const std::vector<AnySamples>& sources,
   for (const AnyOut& output : outputs) samples.push_back(output.data());
   TransformChain chain;
   for (const nb::handle& link : links) chain.links.push_back(link_of(link));
+  const Transform transform = std::move(chain);  // displacements are not copied
   const auto word = [&](const char* name) { return nb::cast<std::string>(options[name]); };
   const auto gaussian = nb::cast<std::array<double, 2>>(options["label_gaussian"]);
   const ResampleOptions chosen{.filter = choice<Filter>("interpolator", word("interpolator")),
@@ -65,7 +66,7 @@ void resample_arrays(const std::vector<AnySamples>& sources,
                                .threads = nb::cast<int>(options["threads"])};
   Interruption interruption(std::move(progress));
   interruption.run([&] {
-    resample(views, chain, chosen, samples,
+    resample(views, transform, chosen, samples,
              [&](double fraction) { return interruption.go_on(fraction); });
   });
 }

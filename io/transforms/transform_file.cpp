@@ -152,9 +152,9 @@ TransformParts open_transform(const std::string& path, const TransformReadOption
   TransformParts parts = opened(path, options);
   if (!options.takes_inverted && std::ranges::count(parts.file.is_inverted, true) > 0) {
     throw IoError(path, "",
-                  "leads from the source to the output, a warp needs the inverse; write it by "
+                  "leads from the source to the output, and its inverse is needed; write that by "
                   "tetwarp compose " +
-                      path + " -o FIELD --like IMAGE, and warp by FIELD");
+                      path + " -o FIELD --like IMAGE, and read FIELD");
   }
   for (FieldReader& field : parts.fields) {
     if (!field.read) continue;  // of a transform that is no field

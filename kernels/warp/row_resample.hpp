@@ -12,12 +12,13 @@ namespace tetwarp {
 
 /// From output voxels to positions in the source's index space: an affine map, to which the
 /// displacement of a field on the output's grid may be added; or transforms that follow each other.
+/// Affine maps around a single field or spline are part of these maps.
 struct ResampleMap {
   IndexAffine to_source;            ///< output index to source index, without displacements
   FieldView field;                  ///< on the output's grid
-  double from_world[3][3];          ///< a vector of the world in source voxels
+  double from_world[3][3];          ///< a displacement in source voxels
   View<const TransformLink> links;  ///< size 0: none; the first one is a field or a spline
-  IndexAffine to_world;             ///< output index to world, for `links`
+  IndexAffine to_world;             ///< output index to the place from which `links` displace
   IndexAffine to_first;             ///< output index to where the first link is applied [world]
   IndexAffine to_first_index;       ///< the same in the index space of its grid
   bool is_parallel;    ///< the only link is a field with a grid along the axes of the output's

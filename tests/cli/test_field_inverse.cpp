@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "host/cli/tools/field_inverse.hpp"
+#include "host/cli/warp/field_inverse.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -121,7 +121,7 @@ TEST(FieldInverse, OfLinearMapsIsTheInverseMatrix) {
       }
       ASSERT_GT(points.size(), 300U) << m;
 
-      const cli::InverseCounts counts = cli::invert_field(field, images);
+      const cli::InverseCounts counts = cli::FieldInverse(field).apply(images, 1);
 
       EXPECT_EQ(counts.not_found, 0) << m;
       EXPECT_LE(counts.largest_residual, 1e-6 * 0.5);
@@ -146,12 +146,34 @@ TEST(FieldInverse, IsFoundForEveryImage) {
       const std::vector<Point3> images = transformed(field, random_points(grid, 0, 1, 2000));
       std::vector<Point3> found = images;
 
-      const cli::InverseCounts counts = cli::invert_field(field, found);
+      const cli::InverseCounts counts = cli::FieldInverse(field).apply(found, 1);
 
       EXPECT_EQ(counts.not_found, 0) << size << " " << field.index();
       EXPECT_LE(largest_distance(transformed(field, found), images), 1e-6 * 0.5);
     }
   }
+}
+
+/// Of more points than a thread takes at a time, a good part of them beyond the first search.
+TEST(FieldInverse, HasTheSameBitsForAnyNumberOfThreads) {
+  const Grid grid = turned_grid(9);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.25, 0.25);
+  DisplacementField field{grid, {}};
+  for (std::int64_t n = 0; n < 3 * grid.voxel_count(); ++n) {
+    field.displacement.push_back(static_cast<float>(shift(random)));
+  }
+  const std::vector<Point3> targets = random_points(grid, -0.1, 1.1, 17000);
+  std::vector<Point3> one = targets, three = targets;
+  const cli::InverseCounts counts = cli::FieldInverse(field).apply(one, 1);
+  cli::FieldInverse again(field);
+  again.apply(three, 3);
+  EXPECT_EQ(three, one);
+  std::vector<Point3> second = targets;
+  again.apply(second, 2);
+  EXPECT_EQ(second, one);
+  EXPECT_GT(counts.not_found, 0);
+  EXPECT_LT(counts.not_found, 10000);
 }
 
 /// A shift by 3 voxels along i: what is within 3 voxels of the first face of the grid, which ends
@@ -167,7 +189,7 @@ TEST(FieldInverse, CountsWhatNothingIsTakenToAndKeepsItsPlace) {
   for (int i = -4; i < 14; ++i) points.push_back({static_cast<double>(i), 2.3, 1.7});
   const std::vector<Point3> targets = points;
 
-  const cli::InverseCounts counts = cli::invert_field(field, points);
+  const cli::InverseCounts counts = cli::FieldInverse(field).apply(points, 1);
 
   EXPECT_EQ(counts.not_found, 3);
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -187,7 +209,7 @@ TEST(FieldInverse, OfAMapThatIsSingularIsFoundInItsImageAlone) {
   std::vector<Point3> points{{3.2, 4.1, 4}, {3.2, 4.1, 4.75}, {1, 2, 7}, {6.5, 6.25, 3.6}};
   const std::vector<Point3> targets = points;
 
-  EXPECT_EQ(cli::invert_field(field, points).not_found, 2);
+  EXPECT_EQ(cli::FieldInverse(field).apply(points, 1).not_found, 2);
   EXPECT_EQ(points[1], targets[1]);
   EXPECT_EQ(points[2], targets[2]);
 }

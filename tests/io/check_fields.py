@@ -47,13 +47,18 @@ def inner(points, affine, margin=2):
 
 
 def check_inverse(run, what, file, affine, forward):
-    """compose FILE at y leads to an x with forward(x) = y; compose FILE^-1 is forward itself."""
+    """compose FILE at y leads to an x with forward(x) = y, warp by FILE samples there, with the bits
+    of warp by the composed field; compose FILE^-1 is forward itself.
+    """
     y = points_of(DIMS, affine)
     near = inner(y, affine)
     assert np.count_nonzero(near) > 20
-    line = run.refused("warp", "image.nii", file, "-o", "out.nii")
-    assert f"tetwarp compose {file} -o" in line, line
     run("compose", file, "-o", "inverse.nii", "--like", "image.nii")
+    run("warp", "image.nii", "inverse.nii", "-o", "by_field.nii")
+    line = run.refused("warp", "image.nii", file, "-o", "out.nii", "--outside", "background")
+    assert "leave out --outside" in line, line
+    run("warp", "image.nii", file, "-o", "out.nii")
+    assert np.array_equal(read_nifti(run.path("out.nii")), read_nifti(run.path("by_field.nii"))), what
     x = y + read_field(run.path("inverse.nii"))
     expect(f"{what}, inverse", forward(x)[near], y[near], 2e-4)
     run("compose", file + "^-1", "-o", "itself.nii", "--like", "image.nii")

@@ -219,26 +219,17 @@ double cpu_seconds_of(const JobPlan& plan, const WarpArguments& arguments) {
                                plan.mesh.header().hex_count > 0, !plan.mesh.mid_nodes().empty());
 }
 
-/// The name of an output in a folder: that of its volume. A pair .hdr and .img and DICOM images
-/// become one file .nii.gz, a pair of .nhdr and samples .nrrd.
+/// The name of an output in a folder. Throws IoError when the name of the volume has none for it.
 std::string output_name_of(const std::string& volume) {
-  fs::path path = fs::absolute(volume).lexically_normal();  // a name of "." and ".." also
-  if (path.filename().empty()) path = path.parent_path();   // of a folder with a slash at its end
-  std::string name = path.filename().string();
   std::error_code error;
-  if (fs::is_directory(volume, error)) return name + ".nii.gz";
-  constexpr std::pair<std::string_view, std::string_view> written[] = {
-      {".hdr", ".nii.gz"}, {".hdr.gz", ".nii.gz"}, {".img", ".nii.gz"}, {".img.gz", ".nii.gz"},
-      {".dcm", ".nii.gz"}, {".nhdr", ".nrrd"},     {".mgh.gz", ".mgz"}};
-  for (const auto& [end, own] : written) {
-    if (has_extension(name, end)) return name.substr(0, name.size() - end.size()).append(own);
-  }
-  if (!has_one_of(name, volume_endings)) {
+  const OutputNames names = output_names_of(volume);
+  if (fs::is_directory(volume, error)) return names.of_folder;
+  if (!has_one_of(names.of_file, volume_endings)) {
     throw IoError(volume, "",
                   "its name ends like that of no format, and its output would have the same name; "
                   "rename it, or warp it alone with a name behind -o");
   }
-  return name;
+  return names.of_file;
 }
 
 /// Checks that the folder of the outputs can be written to, or made.
@@ -269,6 +260,20 @@ void check_curves(const MeshReader& mesh, const WarpArguments& arguments) {
 }
 
 }  // namespace
+
+OutputNames output_names_of(const std::string& volume) {
+  fs::path path = fs::absolute(volume).lexically_normal();  // a name of "." and ".." also
+  if (path.filename().empty()) path = path.parent_path();   // of a folder with a slash at its end
+  const std::string name = path.filename().string(), of_folder = name + ".nii.gz";
+  constexpr std::pair<std::string_view, std::string_view> written[] = {
+      {".hdr", ".nii.gz"}, {".hdr.gz", ".nii.gz"}, {".img", ".nii.gz"}, {".img.gz", ".nii.gz"},
+      {".dcm", ".nii.gz"}, {".nhdr", ".nrrd"},     {".mgh.gz", ".mgz"}};
+  for (const auto& [end, own] : written) {
+    if (!has_extension(name, end)) continue;
+    return {of_folder, name.substr(0, name.size() - end.size()).append(own)};
+  }
+  return {of_folder, name};
+}
 
 std::vector<std::string> JobPlan::outputs() const {
   std::vector<std::string> all;

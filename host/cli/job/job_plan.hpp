@@ -69,6 +69,16 @@ struct JobPlan {
   std::vector<std::string> outputs() const;
 };
 
+/// Names of the output of a volume in a folder.
+struct OutputNames {
+  std::string of_folder;  ///< where the volume is a folder of DICOM images
+  /// Where it is a file: its own name. A pair .hdr and .img and a DICOM image become one file
+  /// .nii.gz, a pair of .nhdr and samples .nrrd.
+  std::string of_file;
+};
+
+OutputNames output_names_of(const std::string& volume);
+
 /// True when the steps of a series are written to files of their own before they are joined, so
 /// that --resume can keep them.
 bool may_resume_within(const VolumePlan& volume, const WarpArguments& arguments);

@@ -27,7 +27,7 @@
 #include "host/cli/job/step_selection.hpp"
 #include "host/cli/job/warnings.hpp"
 #include "host/cli/job/warp_arguments.hpp"
-#include "host/cli/tools/transform_chain.hpp"
+#include "host/cli/warp/transform_chain.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -114,61 +114,6 @@ std::vector<std::int64_t> steps_of(const ComposeArguments& arguments,
   return arguments.steps.of(first->step_count(), first->path());
 }
 
-/// The displacements of the chosen step, slice by slice of the grid.
-Volume composed(const ComposeArguments& arguments,
-                const std::vector<ChainLink>& links,
-                const Grid& grid,
-                ChainNotes& notes) {
-  Volume field = make_volume(grid, PixelType::float32, 3, "tetwarp_displacement");
-  const std::span<float> numbers = field.samples<float>();
-  const std::int64_t slice = grid.dims[0] * grid.dims[1];
-  const std::int64_t part = std::max<std::int64_t>(1, (std::int64_t{1} << 22) / slice);
-  std::size_t n = 0;
-  for (std::int64_t begin = 0; begin < grid.dims[2]; begin += part) {
-    std::vector<Point3> voxels;
-    for (std::int64_t k = begin; k < std::min(begin + part, grid.dims[2]); ++k) {
-      for (std::int64_t v = 0; v < slice; ++v) {
-        voxels.push_back(
-            grid.world_of({static_cast<double>(v % grid.dims[0]),
-                           static_cast<double>(v / grid.dims[0]), static_cast<double>(k)}));
-      }
-    }
-    std::vector<Point3> points = voxels;
-    for (auto link = links.rbegin(); link != links.rend(); ++link) {
-      link->apply(arguments.threads, points, notes);
-      stop_if_interrupted();
-    }
-    for (std::size_t v = 0; v < voxels.size(); ++v) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        numbers[n++] = static_cast<float>(points[v][axis] - voxels[v][axis]);
-      }
-    }
-  }
-  return field;
-}
-
-void print_chain_notes(const std::string& output, const Grid& grid, const ChainNotes& notes) {
-  if (notes.outside > 0) {
-    fmt::print(stderr,
-               "tetwarp: {}: {} of {} positions were in no cell of a mesh and kept their "
-               "place there\n",
-               output, notes.outside, grid.voxel_count());
-  }
-  if (notes.straightened > 0) {
-    fmt::print(
-        stderr,
-        "tetwarp: {}: {} times a position was mapped by the straight tetrahedron of its cell, "
-        "whose curved map has no inverse there\n",
-        output, notes.straightened);
-  }
-  if (notes.not_inverted > 0) {
-    fmt::print(stderr,
-               "tetwarp: {}: {} of {} positions have no inverse: the field takes nothing there; "
-               "they kept their place\n",
-               output, notes.not_inverted, grid.voxel_count());
-  }
-}
-
 int run_compose(const ComposeArguments& arguments) {
   check_volume_name(arguments.output);
   check_volume(arguments.like, "--like takes the grid of a volume");
@@ -199,12 +144,14 @@ int run_compose(const ComposeArguments& arguments) {
   for (std::size_t s = 0; s < steps.size(); ++s) {
     ChainNotes notes;
     for (ChainLink& link : links) link.choose(steps[s]);
-    const Volume field = composed(arguments, links, grid, notes);
+    const std::vector<float> field = displacements_of(links, grid, arguments.threads, notes);
     OutputWriter writer(names[s], grid, {array}, {.compress = arguments.compress}, false, 1,
                         ChunkShape::rows);
-    writer.write(0, {{0, 0, 0}, grid.dims}, field.data.data());
+    writer.write(0, {{0, 0, 0}, grid.dims}, field.data());
     writer.finish();
-    print_chain_notes(names[s], grid, notes);
+    for (const std::string& line : notes.lines(grid.voxel_count())) {
+      fmt::print(stderr, "tetwarp: {}: {}\n", names[s], line);
+    }
     if (has_nifti_name(names[s]) && itk_components(grid) == 2) {
       fmt::print(stderr, "tetwarp: {}: {}\n", names[s], itk_slice_note);
     }

@@ -20,7 +20,7 @@
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/step_selection.hpp"
 #include "host/cli/job/warnings.hpp"
-#include "host/cli/tools/mapped_points.hpp"
+#include "host/cli/warp/mapped_points.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -68,7 +68,7 @@ MappedPoints moved(const PointsArguments& arguments,
                    const std::vector<Point3>& points,
                    const MapPointsOptions& options) {
   try {
-    return mapped_by(mesh, step, points, options);
+    return mapped_by(mesh, mesh.read_step(step), points, options);
   } catch (const std::invalid_argument& error) {
     throw IoError(arguments.mesh_file, "", error.what());
   }

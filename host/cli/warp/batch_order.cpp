@@ -32,21 +32,6 @@ void add_read(const std::string& path, std::set<std::string>& reads) {
   }
 }
 
-/// Names that the output of a volume in a folder may have: the volume's, or with the ending of what
-/// its format becomes.
-std::vector<SplitName> names_in_folder(const std::string& folder, const std::string& volume) {
-  std::filesystem::path path = std::filesystem::absolute(volume).lexically_normal();
-  if (path.filename().empty()) path = path.parent_path();  // a slash at the end
-  const std::string whole = canonical_path(folder) + "/" + path.filename().string();
-  std::vector<SplitName> names{{whole, ".nii.gz"}, split_name(whole)};
-  SplitName plain = names.back();
-  if (has_extension(whole, ".gz")) plain = split_name(plain.stem);
-  for (const char* const extension : {".nii.gz", ".nrrd", ".mgz"}) {
-    names.push_back({plain.stem, extension});
-  }
-  return names;
-}
-
 std::vector<SplitName> names_of_output(const std::string& output,
                                        const std::vector<std::string>& volumes) {
   if (output.empty()) return {};
@@ -55,9 +40,11 @@ std::vector<SplitName> names_of_output(const std::string& output,
     return {{canonical_path(name.stem), name.extension}};
   }
   std::vector<SplitName> names;
-  for (const std::string& volume : volumes) {
-    const std::vector<SplitName> some = names_in_folder(output, volume);
-    names.insert(names.end(), some.begin(), some.end());
+  for (const std::string& volume : volumes) {  // which need not be there yet
+    const auto [of_folder, of_file] = output_names_of(volume);
+    for (const std::string& name : {of_folder, of_file}) {
+      names.push_back(split_name(canonical_path(output) + "/" + name));
+    }
   }
   return names;
 }

@@ -13,19 +13,21 @@
 
 namespace tetwarp::cli {
 
-/// Canonical paths of the files of a job.
+/// Canonical paths of the files of a job, as far as they are known before it runs.
 struct JobFiles {
   std::set<std::string> reads;
-  /// Outputs, with --provenance the files beside them, and the report, as planned from the inputs
-  /// that are there; of a job that cannot be planned, or has an error, the output that it names.
+  /// Outputs, files of --provenance beside them, and the report. Of a job that cannot be planned
+  /// yet, since an input is missing or wrong, only the output that it names.
   std::set<std::string> writes;
-  /// False: the job may also write each of `outputs` with a step and an array before its extension.
+  /// False: `writes` may lack files, which are called as one of `outputs` with the number of a step
+  /// and the name of an array before its extension.
   bool is_planned = false;
   std::vector<SplitName> outputs;
-  std::optional<std::set<std::string>> arrays;  ///< in such names; none: any
+  std::optional<std::set<std::string>> arrays;  ///< that may be in such names; nothing: any
 };
 
-/// Of each job. Where an earlier job writes what a job reads, the plan of that job is not trusted.
+/// Of each job. One that reads what an earlier job writes counts as not planned: the file that is
+/// there now may be another one than it will read.
 std::vector<JobFiles> files_of_jobs(const std::vector<BatchJob>& jobs);
 
 /// Throws IoError when two jobs, or a job and the batch report, write the same file.

@@ -39,6 +39,7 @@ std::vector<DisplacementField*> fields_of(Transform& transform) {
 /// one that --steps chooses.
 TransformReadOptions read_options(const WarpArguments& arguments, const TransformSource& source) {
   TransformReadOptions options = arguments.transform_options();
+  options.takes_inverted = true;
   const std::string& path = arguments.files.back();
   options.world = source.world ? source.world : base_factor(arguments.grid);
   const bool says_steps = std::ranges::any_of(
@@ -69,11 +70,17 @@ TransformRun::TransformRun(const WarpArguments& arguments,
                            const ResampleOptions& options)
     : arguments_(arguments),
       source_(source),
-      parts_(open_transform(arguments.files.back(), read_options(arguments, source))),
+      read_(read_options(arguments, source)),
+      parts_(open_transform(arguments.files.back(), read_)),
       options_(options) {
   const bool says_outside = std::ranges::any_of(
       arguments.given, [](const auto& option) { return option.first == "outside"; });
   if (parts_.file.ends_with_field && !says_outside) options_.only_in_field = true;
+  if (inverts() && options_.only_in_field) {
+    throw IoError(arguments.files.back(), "",
+                  "is inverted, and positions without an inverse keep their place; leave out "
+                  "--outside background");
+  }
   plan_.path = arguments.files.front();
   plan_.read = source.read;
   plan_.read.scratch = arguments.output;
@@ -85,6 +92,15 @@ TransformRun::TransformRun(const WarpArguments& arguments,
   plan_.is_series = source.is_series;
   plan_.outputs = {arguments.output};
   plan_memory();
+}
+
+bool TransformRun::inverts() const {
+  return std::ranges::count(parts_.file.is_inverted, true) > 0;
+}
+
+std::string TransformRun::convention() const {
+  if (!inverts()) return parts_.file.convention;
+  return fmt::format("{}, inverted within {:.2g}", parts_.file.convention, notes_.largest_residual);
 }
 
 void TransformRun::plan_memory() {
@@ -102,11 +118,21 @@ void TransformRun::plan_memory() {
     displacements +=
         parts_.fields[n].voxel_bytes * static_cast<double>(fields[n]->grid.voxel_count());
   }
+  if (inverts()) displacements += displacement_memory(plan_.output_grid);
   fixed_bytes_ = fixed_memory(plan_, arguments_, MeshHeader{});
   plan_.memory = fixed_bytes_ + samples + displacements;
   set_memory_limit(plan_, arguments_);
   check_room({&plan_, 1}, arguments_);
   if (is_whole()) return;
+  if (inverts()) {
+    const std::string& path = arguments_.files.back();
+    throw IoError(
+        path, "",
+        fmt::format("leads from the source to the output, and its inverse needs all voxels "
+                    "at once; give --memory at least {}, or write the inverse by tetwarp "
+                    "compose {} -o FIELD --like IMAGE, and warp by FIELD",
+                    limit_text(plan_.memory), path));
+  }
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // the memory of a part is returned when it is freed
 }
 
@@ -186,6 +212,15 @@ void TransformRun::plan(JobResult& result) {
   result.refusal = plan_.refusal;
 }
 
+/// Reads the transform as a whole and replaces it by the field that it means.
+void TransformRun::invert() {
+  ChainLink link(arguments_.files.back(), MeshReadOptions{}, read_.axes, read_.world);
+  link.choose(read_.step.value_or(0));
+  parts_.file.transform = DisplacementField{
+      plan_.output_grid,
+      displacements_of({&link, 1}, plan_.output_grid, arguments_.warp.threads, notes_)};
+}
+
 void TransformRun::read_fields() {
   const std::vector<DisplacementField*> fields = fields_of(parts_.file.transform);
   for (std::size_t n = 0; n < fields.size(); ++n) {
@@ -260,7 +295,12 @@ void TransformRun::run_parts(std::int64_t step,
 
 void TransformRun::run(const JobContext& context, JobResult& result) {
   ProgressBar bar(context.shows_progress, context.label, source_.steps.size());
-  if (is_whole()) read_fields();
+  if (inverts()) {
+    invert();
+    add_notes(notes_.lines(plan_.output_grid.voxel_count()), context, result);
+  } else if (is_whole()) {
+    read_fields();
+  }
   OutputWriter writer(arguments_.output, plan_.output_grid, plan_.arrays,
                       {.compress = arguments_.compress,
                        .background = arguments_.warp.background,

@@ -16,6 +16,7 @@
 #include "host/cli/job/job_result.hpp"
 #include "host/cli/job/output_writer.hpp"
 #include "host/cli/job/warp_arguments.hpp"
+#include "host/cli/warp/transform_chain.hpp"
 #include "host/cli/warp/warp_job.hpp"
 #include "host/warp/resample_blocks.hpp"
 
@@ -32,7 +33,8 @@ struct TransformSource {
 };
 
 /// One job. As a whole one array of a step is in memory at a time, and all displacements; in parts
-/// windows of them.
+/// windows of them. A transform that leads from the source to the output becomes a field on the
+/// grid of the output first, which is in memory as a whole.
 class TransformRun {
  public:
   /// Opens the transform and plans memory and disk.
@@ -43,8 +45,8 @@ class TransformRun {
                const TransformSource& source,
                const ResampleOptions& options);
 
-  /// What the transform was taken for.
-  const std::string& convention() const { return parts_.file.convention; }
+  /// What the transform was taken for, after a run also how exactly it was inverted.
+  std::string convention() const;
 
   /// Of --dry-run: states memory and parts of all steps, and why they cannot run here.
   void plan(JobResult& result);
@@ -53,8 +55,12 @@ class TransformRun {
 
  private:
   bool is_whole() const { return plan_.memory_limit == 0; }
+  /// Whether the file says that the transform, or a part of it, leads from the source to the
+  /// output.
+  bool inverts() const;
   void plan_memory();
   void read_fields();
+  void invert();
   PartLimits limits() const;
   ResampleBlocks blocks(const PartLimits& limits) const;
   double least_part_bytes() const;
@@ -65,9 +71,11 @@ class TransformRun {
 
   const WarpArguments& arguments_;
   const TransformSource& source_;
+  TransformReadOptions read_;  ///< of the transform
   TransformParts parts_;
   ResampleOptions options_;
   VolumePlan plan_;
+  ChainNotes notes_;        ///< of an inverse
   double fixed_bytes_ = 0;  ///< memory of the process beside samples and displacements
 };
 

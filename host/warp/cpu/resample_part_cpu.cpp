@@ -51,23 +51,30 @@ ResampleMap make_map(const Grid& source,
   map.to_first = map.to_world = world_map(output);
   const bool begins_affine = links.front().is_affine();
   if (begins_affine) map.to_first = composed(links.front().affine, map.to_world);
+  IndexAffine to_source = index_map(source);
   if (begins_affine && links.size() == 1) {
-    map.to_source = composed(index_map(source), map.to_first);
+    map.to_source = composed(to_source, map.to_first);
     return map;
   }
-  const IndexFromWorld from_world = index_from_world(source);
-  for (int row = 0; row < 3; ++row) std::copy_n(from_world.linear[row], 3, map.from_world[row]);
+  const bool is_single = std::ranges::count_if(links, &TransformLink::is_affine) + 1 ==
+                         std::ssize(links);  // one field or spline, maybe between affine maps
+  if (is_single && links.size() > 1) {
+    if (links.back().is_affine()) to_source = composed(to_source, links.back().affine);
+    map.to_source = composed(to_source, map.to_first);
+  }
+  if (is_single) map.to_world = map.to_first;
+  for (int row = 0; row < 3; ++row) std::copy_n(to_source.linear[row], 3, map.from_world[row]);
   const Grid& grid = *first_grid(transform);
   const TransformLink& first = links[begins_affine ? 1 : 0];
-  if (links.size() == 1 && first.field.vectors != nullptr && grid == output) {
+  const bool is_field = is_single && first.field.vectors != nullptr;
+  if (is_field && !begins_affine && grid == output) {
     map.field = first.field;
     return map;
   }
-  map.links = {&first, std::ssize(links) - (begins_affine ? 1 : 0)};
+  map.links = {&first, is_single ? 1 : std::ssize(links) - (begins_affine ? 1 : 0)};
   map.to_first_index =
       begins_affine ? composed(index_map(grid), map.to_first) : between_grids(grid, output);
-  map.is_parallel = links.size() == 1 && first.field.vectors != nullptr &&
-                    is_parallel(map.to_first_index, output);
+  map.is_parallel = is_field && is_parallel(map.to_first_index, output);
   return map;
 }
 

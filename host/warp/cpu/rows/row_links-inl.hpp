@@ -27,6 +27,11 @@ struct alignas(64) EightPositions {
   double at[3][cell_edge];
 };
 
+/// Displacements of eight voxels by axis [world].
+struct alignas(64) EightVectors {
+  float at[3][cell_edge];
+};
+
 /// Coordinates of a grid's index space, split for interpolation.
 struct alignas(64) EightIndices {
   double lower[3][cell_edge];
@@ -42,6 +47,9 @@ class RowLinks {
 
   bool are_used() const { return map_.links.size > 0; }
 
+  /// Whether they are one field, whose vectors() are all that is needed.
+  bool are_field() const { return map_.links.size == 1 && map_.links[0].field.vectors != nullptr; }
+
   /// Begins row j of slice k of the output.
   void set_row(std::int64_t j, std::int64_t k) {
     const IndexAffine* const maps[] = {&map_.to_first, &map_.to_first_index, &map_.to_world,
@@ -55,6 +63,27 @@ class RowLinks {
         offset_[3 * n + row] = maps[n]->offset[row];
       }
     }
+  }
+
+  /// The displacements of eight voxels of the row from i on. @pre are_field()
+  /// @returns the voxels that are not background, as bits
+  unsigned vectors(std::int64_t i, EightVectors& vectors) const {
+    const Tag d;
+    double start[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {  // as IndexAffine::map()
+      const std::size_t n = first_index + axis;
+      start[axis] = step_[n] * static_cast<double>(i) + along_j_[n] + along_k_[n] + offset_[n];
+    }
+    EightIndices index;
+    split(map_.links[0], index, [&](std::size_t lane, hn::Vec<Tag>* at) {
+      const auto steps = hn::Iota(d, static_cast<double>(lane));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        at[axis] =
+            hn::Add(hn::Set(d, start[axis]), hn::Mul(hn::Set(d, step_[first_index + axis]), steps));
+      }
+    });
+    set_vectors(map_.links[0].field, index, vectors);
+    return map_.only_in_field ? index.inside : 0xff;
   }
 
   /// Eight voxels of the row from i on.
@@ -72,7 +101,6 @@ class RowLinks {
       const auto steps = hn::Iota(d, static_cast<double>(lane));
       return hn::Add(hn::Set(d, start[n]), hn::Mul(hn::Set(d, step_[n]), steps));
     };
-    constexpr std::size_t first = 0, first_index = 3, world = 6, source = 9;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
         hn::Store(along_row(first + axis, lane), d, x.at[axis] + lane);
@@ -189,22 +217,41 @@ class RowLinks {
   }
 
   static unsigned move_at(const TransformLink& link, const EightIndices& index, EightPositions& x) {
-    if (link.field.vectors != nullptr && add_field(link.field, index, x)) return index.inside;
-    for (int lane = 0; lane < cell_edge; ++lane) {
-      if ((index.inside >> lane & 1) == 0) continue;
-      if (link.field.vectors != nullptr) {
-        add_field(link.field, index, lane, x);
-      } else {
-        add_spline(link.spline, index, lane, x);
+    if (link.field.vectors != nullptr) {
+      const Tag d;
+      const hn::Rebind<float, Tag> df;
+      EightVectors vectors;
+      set_vectors(link.field, index, vectors);
+      for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+          const auto vector = hn::PromoteTo(d, hn::Load(df, vectors.at[axis] + lane));
+          hn::Store(hn::Add(hn::Load(d, x.at[axis] + lane), vector), d, x.at[axis] + lane);
+        }
       }
+      return index.inside;
+    }
+    for (int lane = 0; lane < cell_edge; ++lane) {
+      if ((index.inside >> lane & 1) != 0) add_spline(link.spline, index, lane, x);
     }
     return index.inside;
   }
 
-  /// Adds the vectors of a field to eight points within it, if along each axis all or none lie
-  /// between voxels; finite vectors with the bits of add_field() of each.
-  /// @returns false for other points, which are left as they are
-  static bool add_field(const FieldView& field, const EightIndices& index, EightPositions& x) {
+  /// The vectors of a field at eight points; zero at those beyond it.
+  static void set_vectors(const FieldView& field,
+                          const EightIndices& index,
+                          EightVectors& vectors) {
+    if (set_near(field, index, vectors)) return;
+    for (int lane = 0; lane < cell_edge; ++lane) {
+      alignas(16) float vector[4] = {};
+      if ((index.inside >> lane & 1) != 0) set_vector(field, index, lane, vector);
+      for (int axis = 0; axis < 3; ++axis) vectors.at[axis][lane] = vector[axis];
+    }
+  }
+
+  /// The same of eight points within a field, if along each axis all or none lie between voxels;
+  /// finite vectors with the bits of set_vector() of each.
+  /// @returns false for other points
+  static bool set_near(const FieldView& field, const EightIndices& index, EightVectors& vectors) {
     if (index.inside != 0xff) return false;
     const Tag d;
     const hn::Rebind<float, Tag> df;
@@ -230,26 +277,26 @@ class RowLinks {
       step[axis] = is_between ? stride : 0;
       stride *= field.size[axis];
     }
-    if ((step[0] | step[1] | step[2]) == 0 && add_row(field, place, x)) return true;
+    if ((step[0] | step[1] | step[2]) == 0 && set_row_vectors(field, place, vectors)) return true;
     // Four numbers are read from each neighbor on.
     const auto last = hn::Set(d, static_cast<double>(stride - 4 - step[0] - step[1] - step[2]));
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
       if (!hn::AllTrue(d, hn::Le(hn::Load(d, place + lane), last))) return false;
     }
-    alignas(64) float vectors[4 * cell_edge];
-    interpolate(field, place, step, fraction, vectors);
+    alignas(64) float by_point[4 * cell_edge];
+    interpolate(field, place, step, fraction, by_point);
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
       hn::Vec<decltype(df)> vector[4];
-      hn::LoadInterleaved4(df, vectors + 4 * lane, vector[0], vector[1], vector[2], vector[3]);
-      add(vector, lane, x);
+      hn::LoadInterleaved4(df, by_point + 4 * lane, vector[0], vector[1], vector[2], vector[3]);
+      for (int axis = 0; axis < 3; ++axis) hn::Store(vector[axis], df, vectors.at[axis] + lane);
     }
     return true;
   }
 
-  /// Adds the vectors of eight voxels that follow each other in a field.
+  /// Those of eight voxels that follow each other in a field.
   /// @param place  of the voxels, in numbers
   /// @returns false if they do not
-  static bool add_row(const FieldView& field, const double* place, EightPositions& x) {
+  static bool set_row_vectors(const FieldView& field, const double* place, EightVectors& vectors) {
     const Tag d;
     const hn::Rebind<float, Tag> df;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
@@ -261,20 +308,9 @@ class RowLinks {
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
       hn::Vec<decltype(df)> vector[3];
       hn::LoadInterleaved3(df, first + 3 * lane, vector[0], vector[1], vector[2]);
-      add(vector, lane, x);
+      for (int axis = 0; axis < 3; ++axis) hn::Store(vector[axis], df, vectors.at[axis] + lane);
     }
     return true;
-  }
-
-  /// Adds vectors of points from `lane` on.
-  static HWY_INLINE void add(const hn::Vec<hn::Rebind<float, Tag>>* vector,
-                             std::size_t lane,
-                             EightPositions& x) {
-    const Tag d;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto moved = hn::Add(hn::Load(d, x.at[axis] + lane), hn::PromoteTo(d, vector[axis]));
-      hn::Store(moved, d, x.at[axis] + lane);
-    }
   }
 
   /// The vectors of eight points: two at a time where vectors have eight lanes.
@@ -345,11 +381,12 @@ class RowLinks {
     return hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
   }
 
-  /// Adds the vector of a field to a point: its three components at once.
-  static void add_field(const FieldView& field,
-                        const EightIndices& index,
-                        int lane,
-                        EightPositions& x) {
+  /// The vector of a field at a point: its three components at once.
+  /// @param vector  out, four numbers, of which three are used
+  static void set_vector(const FieldView& field,
+                         const EightIndices& index,
+                         int lane,
+                         float* vector) {
     const hn::FixedTag<float, 4> d;
     std::int64_t lower[3], step[3], stride = 3;
     for (int axis = 0; axis < 3; ++axis) {
@@ -361,7 +398,6 @@ class RowLinks {
     const float* const v = field.at(lower[0], lower[1], lower[2]);
     const std::int64_t farthest = (v - field.vectors) + step[0] + step[1] + step[2];
     const bool is_last = farthest + 4 > stride;  // four numbers would end beyond the last vector
-    alignas(16) float vector[4];
     const auto fx = hn::Set(d, static_cast<float>(index.fraction[0][lane]));
     const auto fy = hn::Set(d, static_cast<float>(index.fraction[1][lane]));
     const auto fz = hn::Set(d, static_cast<float>(index.fraction[2][lane]));
@@ -376,7 +412,6 @@ class RowLinks {
     const auto near = lerp(fy, along_x(v), along_x(v + step[1]));
     const auto next = lerp(fy, along_x(v + step[2]), along_x(v + step[2] + step[1]));
     hn::Store(lerp(fz, near, next), d, vector);
-    for (int axis = 0; axis < 3; ++axis) x.at[axis][lane] += static_cast<double>(vector[axis]);
   }
 
   /// Adds the vector of a spline to a point: rows of four coefficients at once.
@@ -404,7 +439,8 @@ class RowLinks {
     }
   }
 
-  static constexpr std::size_t padded_rows = 16;  ///< three rows of four maps, and padding
+  // Rows of four maps, three each, and padding.
+  static constexpr std::size_t first = 0, first_index = 3, world = 6, source = 9, padded_rows = 16;
 
   const ResampleMap& map_;
   // Of the rows of to_first, to_first_index, to_world and to_source: their first coefficients, what

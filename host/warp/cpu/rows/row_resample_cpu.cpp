@@ -76,11 +76,21 @@ class RowResampler {
     const auto at = static_cast<std::size_t>(cell_edge * taps_.count);
     unsigned inside = 0;
     if (field_.is_used()) {
-      inside = add_direct(i, j, k, field_.vectors(i), at) & field_.inside(i);
+      inside = add_moved(i, j, k, field_.vectors(i), at) & field_.inside(i);
+    } else if (links_.are_field()) {
+      EightVectors vectors;
+      const unsigned not_background = links_.vectors(i, vectors);
+      inside = not_background & add_direct<true>(i, j, k, at, [&](std::size_t lane, Vectors& to) {
+                 for (int axis = 0; axis < 3; ++axis) {
+                   to.at[axis] = hn::Load(RowTag(), vectors.at[axis] + lane);
+                 }
+               });
     } else if (links_.are_used()) {
       inside = add_linked(i, at);
+    } else if (op_.map.has_field()) {
+      inside = add_moved(i, j, k, op_.map.field.at(i, j, k), at);
     } else {
-      inside = add_direct(i, j, k, op_.map.has_field() ? op_.map.field.at(i, j, k) : nullptr, at);
+      inside = add_direct<false>(i, j, k, at, [](std::size_t, Vectors&) {});
     }
     first_[taps_.count] = row * op_.dims[0] + i;
     fetch_ahead(at);
@@ -89,11 +99,20 @@ class RowResampler {
     if (taps_.count == RowTaps<true>::row_units) flush();
   }
 
-  /// Stores the taps of eight voxels by an affine map and their displacements.
-  /// @param field  three numbers for each voxel; null: none
-  /// @returns the voxels within the source, as bits
-  unsigned add_direct(
+  /// add_direct() by three numbers for each voxel.
+  unsigned add_moved(
       std::int64_t i, std::int64_t j, std::int64_t k, const float* field, std::size_t at) {
+    return add_direct<true>(i, j, k, at, [&](std::size_t lane, Vectors& to) {
+      hn::LoadInterleaved3(RowTag(), field + 3 * lane, to.at[0], to.at[1], to.at[2]);
+    });
+  }
+
+  /// Stores the taps of eight voxels by an affine map and their displacements.
+  /// @param load  (lane, vectors): sets the displacements of a vector of voxels
+  /// @returns the voxels within the source, as bits
+  template <bool has_field, class Load>
+  unsigned add_direct(
+      std::int64_t i, std::int64_t j, std::int64_t k, std::size_t at, const Load& load) {
     const double voxel[3] = {static_cast<double>(i), static_cast<double>(j),
                              static_cast<double>(k)};
     double start[3];
@@ -105,14 +124,11 @@ class RowResampler {
       base[axis] = static_cast<float>(start[axis] - lower);
       whole[axis] = static_cast<int>(lower) - op_.job.source.origin[axis];
     }
-    const bool has_field = field != nullptr;
     unsigned inside = 0;
     const RowTag d;
     for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
       Vectors vectors;
-      if (has_field) {
-        hn::LoadInterleaved3(d, field + 3 * lane, vectors.at[0], vectors.at[1], vectors.at[2]);
-      }
+      load(lane, vectors);
       const auto steps = hn::Iota(d, static_cast<float>(lane));
       RowPositions<true> x;
       for (int axis = 0; axis < 3; ++axis) {
