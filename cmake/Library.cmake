@@ -130,8 +130,8 @@ add_library(tetwarp::tetwarp ALIAS tetwarp)
 set_target_properties(tetwarp PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0
   UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 # Each compiled for one instruction set, chosen at run time. Square roots do not set errno, so that
-# they can be vectors.
-set(tetwarp_vector_options_base -fno-math-errno)
+# they can be vectors. No vector is passed between files, so that its way of passing may differ.
+set(tetwarp_vector_options_base -fno-math-errno -Wno-psabi)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(tetwarp_vector_options_avx2 -fno-math-errno -mavx2)
   set(tetwarp_vector_options_avx512

@@ -31,6 +31,9 @@ PAPERS_LAWS = ["--law", "pyramid", "--rule", "restrictive"]
 STAGES = ("forces", "assembly", "linear", "detection", "contact", "update")
 FREE = ["--no-adhesion"]
 STEEP = 9.81 * math.sin(math.radians(20))  # m/s^2
+PLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "shoulder_plates.json")
+FINE_STRIP = [('"cells": [40, 4]', '"cells": [90, 2]'), ('"stretch": 4000, "shear": 800', '"stretch": 40000, "shear": 8000'),
+              ('"energy": 2', '"energy": 1.5')]
 
 
 def text_of(tool, name):
@@ -223,6 +226,15 @@ def steep_row(columns, report, seconds):
     return row
 
 
+def cloth_on_floor(cells):
+    """A square sheet of cells^2 cells just above the floor, which all its nodes touch."""
+    sheet = {"size": [1, 1], "cells": [cells, cells], "origin": [0, 0, 2e-4]}
+    return {"tetwarp_scene": 1, "time_step": 0.004, "duration": 0.02, "thickness": 1e-4, "contact": {"friction": 0.5},
+            "obstacles": [{"name": "floor", "plane": {"normal": [0, 0, 1], "point": [0, 0, 0]}}],
+            "bodies": [{"name": "cloth", "kind": "cloth", "sheet": sheet, "areal_density": 0.3, "stretch": 400, "shear": 80,
+                        "bend": 2e-4, "self": False}]}
+
+
 def cases(tool):
     """Name of a row, its scene, options and what is kept of it."""
     text = {name: text_of(tool, name) for name in
@@ -242,6 +254,11 @@ def cases(tool):
     for name, scene in (("candy", candy), ("mouth", json.loads(text["mouth"]))):
         yield f"scene/{name} by the paper's laws", scene, PAPERS_LAWS, bond_row
         yield f"scene/{name} by the paper's laws without adhesion", scene, PAPERS_LAWS + FREE, bond_row
+    with open(PLATES, encoding="utf-8") as file:
+        yield "scene/shoulder of plates", json.load(file), [], step_row
+    yield "scene/peel, 90 x 2 stiff cells", changed(text["peel"], FINE_STRIP), [], step_row
+    yield "scene/cloth on a floor, 316 x 316 cells", cloth_on_floor(316), [], step_row
+    yield "scene/candy, first 100 steps", json.loads(text["candy"]), ["--steps", "100"], step_row
     whole = json.loads(text["candy"])
     whole["output"] = {"rate": 5}
     yield "scene/candy whole", whole, ["--threads", "2"], bond_row

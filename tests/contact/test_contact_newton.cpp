@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/newton/newton.hpp"
 #include "tests/support/contact/contact_scenes.hpp"
 
 namespace tetwarp::test {
@@ -58,6 +60,30 @@ TEST(ContactNewton, SolvesDensePackings) {
   const ContactProblem large = scenes::sphere_packing({.edge = 4, .friction = 0.3, .gaps = 0});
   expect_solved(small, FrictionLaw::cone);
   expect_solved(large, FrictionLaw::cone);
+}
+
+/// Law: of jams that 200 sweeps leave, proximal points from these impulses solve few, those from
+/// the solutions of convex problems all.
+TEST(ContactNewton, ConvexProblemsGiveStartsThatSweepsDoNot) {
+  int left = 0, near = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const ContactProblem problem = scenes::jam({.seed = seed});
+    const ContactOptions options{
+        .method = ContactMethod::anderson, .tolerance = 1e-8, .max_sweeps = 200};
+    const ContactSolution swept = solve_contacts(problem, options);
+    if (swept.converged()) continue;
+    ++left;
+    const auto is_solved = [&](NewtonPhases phases) {
+      std::vector<double> impulse = swept.impulse, velocity;
+      return newton_polish(problem, options, impulse, velocity, nullptr,
+                           {.total = 60, .phases = phases})
+          .converged;
+    };
+    near += is_solved(NewtonPhases::near) ? 1 : 0;
+    EXPECT_TRUE(is_solved(NewtonPhases::far)) << seed;
+  }
+  EXPECT_GE(left, 8);
+  EXPECT_LE(near, left / 4);
 }
 
 /// In more than half of the jams that neither sweeps nor proximal points solve no contact slides,

@@ -9,6 +9,7 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/reference/contact/dense.hpp"
+#include "tests/support/contact/contact_methods.hpp"
 #include "tests/support/solvability.hpp"
 #include "tests/support/truth.hpp"
 
@@ -60,6 +61,36 @@ TEST(ContactTruth, DirectionsOfGrowthDoNotHideSolutions) {
 
     EXPECT_TRUE(solution.converged()) << hidden.seed << ": " << solution.report.status_reason;
     EXPECT_LE(reference_eta(problem, solution, options), 2 * hidden.tolerance) << hidden.seed;
+  }
+}
+
+/// Law: each of the last resorts has problems that no single method solves.
+TEST(ContactTruth, OtherStartsSolveWhatNoSingleMethodDoes) {
+  struct Only {
+    unsigned seed;
+    Eigen::Index contacts;
+    ContactOptions options;
+    const char* by;  ///< the last method
+  };
+  constexpr FrictionLaw cone = FrictionLaw::cone, pyramid = FrictionLaw::pyramid;
+  for (Only only : {Only{15849, 5, {.law = pyramid, .tolerance = 1e-6}, "pivoting"},
+                    {11443, 7, {.law = pyramid, .tolerance = 1e-4}, "pivoting"},
+                    {10808, 18, {.law = cone, .tolerance = 1e-6}, "newton"}}) {
+    const ContactProblem problem =
+        samples::make_solvability(Solvability::solvable, only.seed, only.contacts);
+
+    const ContactReport report = solve_contacts(problem, only.options).report;
+
+    EXPECT_EQ(report.status, ContactStatus::converged) << only.seed;
+    EXPECT_TRUE(report.method.ends_with(only.by)) << only.seed << ": " << report.method;
+    only.options.max_sweeps = 20000;
+    only.options.max_newton = 400;
+    for (const ContactMethod method : methods) {
+      if (method == ContactMethod::automatic) continue;
+      only.options.method = method;
+      EXPECT_FALSE(solve_contacts(problem, only.options).converged())
+          << only.seed << ", method " << static_cast<int>(method);
+    }
   }
 }
 

@@ -165,20 +165,35 @@ void IslandFallback::take_turns() {
   }
 }
 
-/// Other starts where impulses can grow without bound, then all sweeps and Newton's method.
+/// Other starts where impulses can grow without bound, then all sweeps and Newton's method: this
+/// first where it costs less.
 void IslandFallback::finish_automatic() {
   const bool is_searched = searches_before_sweeps();
   if (is_searched && find_unbounded()) {
     IslandRestart(attempt_).run();
     last_.clear();
   }
+  if (!attempt_.is_done() && ends_before_sweeps()) polish_while_better();
   if (!attempt_.is_done()) sweep_while_cheaper(infinity, usual_sweeps);
+  polish_while_better();
+  if (!is_searched && !attempt_.is_done()) find_unbounded();
+}
+
+/// Whether all steps that Newton's method has cost less than the sweeps that are left.
+bool IslandFallback::ends_before_sweeps() {
+  const double steps =
+      2.0 * static_cast<double>(max_newton_steps(attempt_.island().contact_count()));
+  const std::int64_t left = attempt_.max_sweeps() - attempt_.outcome().sweeps;
+  return steps * attempt_.sweeps_per_newton_step() < static_cast<double>(left);
+}
+
+/// Newton's method as long as it halves the error: each better start may converge.
+void IslandFallback::polish_while_better() {
   double before = infinity;
   while (!attempt_.is_done() && attempt_.excess() < before / 2) {
     before = attempt_.excess();
-    attempt_.polish({});  // each better start may converge
+    attempt_.polish({});
   }
-  if (!is_searched && !attempt_.is_done()) find_unbounded();
 }
 
 /// Continues with sweeps until Newton's method promises to be cheaper; see method_choice.hpp.

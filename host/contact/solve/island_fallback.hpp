@@ -19,7 +19,8 @@ namespace tetwarp {
 /// 2. Sweeps and Newton's method in turns, each as long as it promises to be the cheaper one.
 /// 3. Contradictions, by more sweeps and by a certificate.
 /// 4. A direction in which impulses can grow without bound; if there is one, other starts.
-/// 5. All sweeps that are left, then Newton's method as long as it improves the impulses.
+/// 5. All sweeps that are left, then Newton's method as long as it improves the impulses; before
+///    these sweeps, too, where all its steps cost less.
 ///
 /// The method `newton` does 1, Newton's method, 3 and 4, without other starts. Methods of sweeps do
 /// 3 and 4, without other starts; the certificates only where many sweeps are allowed. Islands with
@@ -50,6 +51,8 @@ class IslandFallback {
   void certify_after_sweeps();
   void take_turns();
   void finish_automatic();
+  bool ends_before_sweeps();
+  void polish_while_better();
   void run_methods();
   void try_multipliers();
   void sweep_from_guess();

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/step/cpu/block_lu.hpp"
 
 namespace tetwarp::test {
@@ -72,6 +73,28 @@ TEST(BlockLu, SolutionsSatisfyTheEquations) {
       lu.solve({x.data(), static_cast<std::size_t>(x.size())});
 
       EXPECT_LT((dense * x - right).norm(), 1e-11 * right.norm()) << count;
+    }
+  }
+}
+
+/// Law: three vectors at once have the bits of each alone, sparse and zero ones, too.
+TEST(BlockLu, ThreeVectorsAtOnceAreThreeVectors) {
+  for (const int count : {1, 2, 31, 32, 33, 200}) {
+    Problem problem(count, 3, static_cast<unsigned>(count));
+    BlockLu lu;
+    problem.fill(lu);
+    ASSERT_TRUE(lu.factor());
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3 * count, 3);
+    x.col(0) = problem.vector();
+    x(3 * (count / 2) + 1, 1) = 0.1;
+    for (const bool has_third : {false, true}) {
+      if (has_third) x.col(2) = problem.vector();
+      Eigen::MatrixXd single = x, three = x;
+
+      for (auto column : single.colwise()) lu.solve({column.data(), index_of(column.size())});
+      lu.solve_three({three.data(), index_of(three.size())});
+
+      EXPECT_EQ(three, single) << count;
     }
   }
 }

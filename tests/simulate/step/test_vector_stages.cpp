@@ -285,6 +285,34 @@ TEST(VectorStages, SubstitutionSolves) {
   }
 }
 
+/// BlockLu.ThreeVectorsAtOnceAreThreeVectors compares them with single vectors.
+TEST(VectorStages, FourSubstitutionsHaveTheSameBitsInAllSets) {
+  constexpr std::int32_t count = 33;
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::vector<std::int64_t> start{0};
+  std::vector<std::int32_t> row;
+  for (std::int32_t j = 0; j < count; ++j) {
+    for (std::int32_t r = j; r < count; r += 1 + j % 4) row.push_back(r);
+    start.push_back(std::ssize(row));
+  }
+  std::vector<double> lower(12 * row.size()), upper(12 * row.size()), inverse(9 * count);
+  for (auto* values : {&lower, &upper, &inverse}) {
+    for (double& own : *values) own = 0.3 * normal(random);
+  }
+  std::vector<double> load(12 * count);
+  for (std::size_t n = 0; n < load.size() / 2; ++n) load[load.size() - 1 - n] = normal(random);
+  std::vector<double> first;
+  for (const VectorStages* stages : usable_stages()) {
+    std::vector<double> w = load;
+    stages->substitute_four(
+        {const_view(row), const_view(start), lower.data(), upper.data(), inverse.data()}, w.data());
+    if (first.empty()) first = w;
+    EXPECT_EQ(w, first) << stages->name;
+    EXPECT_NE(w, load) << stages->name;
+  }
+}
+
 TEST(VectorStages, ProductsOfBlocksHaveTheBitsOfSingleNumbers) {
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;

@@ -54,8 +54,8 @@ std::vector<double> CondensedIsland::solved_columns(const Key& key) {
       const std::int64_t place = static_cast<std::int64_t>(key[e]) - range_.begin;
       std::copy_n(key.data() + e + 1 + 3 * axis, 3, column + 3 * place);
     }
-    factors_->solve({column, size});
   }
+  factors_->solve_three(columns);
   return columns;
 }
 

@@ -6,8 +6,10 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"
 
 namespace tetwarp {
@@ -185,6 +187,24 @@ void BlockLu::solve(std::span<double> x) {
   for (std::int32_t row = 0; row < count_; ++row) {
     std::copy_n(work_.data() + 3 * place_[index_of(row)], 3, x.data() + 3 * row);
   }
+}
+
+void BlockLu::solve_three(std::span<double> x) {
+  const std::size_t size = 3 * index_of(count_);
+  four_.assign(4 * size, 0.0);
+  const auto for_numbers = [&](const auto& visit) {
+    for (std::size_t row = 0; row < index_of(count_); ++row) {
+      double* const own = four_.data() + 12 * index_of(place_[row]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < 3; ++i) visit(x[k * size + 3 * row + i], own[4 * i + k]);
+      }
+    }
+  };
+  for_numbers([](double from, double& to) { to = from; });
+  vector_stages().substitute_four({view_of(std::as_const(row_)), view_of(std::as_const(start_)),
+                                   lower_.data(), upper_.data(), inverse_.data()},
+                                  four_.data());
+  for_numbers([](double& to, double from) { to = from; });
 }
 
 }  // namespace tetwarp

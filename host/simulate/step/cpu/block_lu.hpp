@@ -32,6 +32,8 @@ class BlockLu {
   bool factor();
   /// x = A^-1 x, [3 count]. @pre factor()
   void solve(std::span<double> x);
+  /// The same for three vectors at once, [3][3 count]: the numbers of three calls.
+  void solve_three(std::span<double> x);
 
  private:
   static constexpr std::int64_t block_size = 12;  ///< three columns of four, the last not used
@@ -56,6 +58,7 @@ class BlockLu {
   std::vector<double> inverse_;        ///< [count][9] of the pivots, row by row
   std::vector<std::int32_t> slot_;     ///< [count] place of a row in the column that is factorized
   std::vector<double> work_;           ///< [3 count]
+  std::vector<double> four_;           ///< [3 count][4]
 };
 
 }  // namespace tetwarp

@@ -25,6 +25,8 @@ class RowRangeLu {
   bool factor(const SystemRows& rows, View<const double> values);
   /// x = A^-1 x, [3 count]. @pre factor()
   void solve(std::span<double> x) { lu_.solve(x); }
+  /// The same for three vectors at once, [3][3 count].
+  void solve_three(std::span<double> x) { lu_.solve_three(x); }
 
  private:
   std::int32_t begin_ = 0, count_ = 0;

@@ -3,13 +3,36 @@
 ///
 /// All functions here are inlined or templates on the width of vectors, which differs between the
 /// files: no code for one instruction set can be linked into another's.
+///
+/// Vectors are loaded by value, one by one: what is copied into an array of them passes memory in
+/// halves with g++, and the load of a whole one then waits for both stores.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "host/simulate/step/cpu/lanes.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"
 
 namespace tetwarp {
+
+template <int width, class Vector, class T>
+inline Vector loaded(const T* numbers) {
+  Vector vector;
+  __builtin_memcpy(&vector, numbers, sizeof(vector));
+  return vector;
+}
+template <int width, class Vector, class T>
+inline void store(const Vector& vector, T* numbers) {
+  __builtin_memcpy(numbers, &vector, sizeof(vector));
+}
+
+/// The numbers of a vector in float64. They are listed, as g++ converts what
+/// __builtin_convertvector() takes in halves.
+template <int width, class Numbers, class Floats, std::size_t... k>
+inline Numbers doubled(const Floats& floats, std::index_sequence<k...>) {
+  return Numbers{floats[k]...};
+}
 
 /// R of count <= width lanes.
 template <int width>
@@ -138,11 +161,9 @@ PlainSums<1> product_of(const GradientArrays<T>& a, std::int64_t begin, std::int
     for (std::int64_t k = a.rows.start[row]; k < a.rows.free_end[row]; ++k) {
       const T* const x = p + 3 * std::int64_t{a.rows.column[k]};
       __builtin_prefetch(a.copy.data + 9 * (k + blocks_ahead));
-      Four column[3];
-      for (int j = 0; j < 3; ++j) {
-        __builtin_memcpy(&column[j], a.copy.data + 9 * k + 3 * j, sizeof(Four));
-      }
-      q += column[0] * x[0] + column[1] * x[1] + column[2] * x[2];
+      const T* const block = a.copy.data + 9 * k;
+      q += loaded<width, Four>(block) * x[0] + loaded<width, Four>(block + 3) * x[1] +
+           loaded<width, Four>(block + 6) * x[2];
     }
     for (int i = 0; i < 3; ++i) {
       a.q[3 * row + i] = q[i];
@@ -158,14 +179,12 @@ void add_rows_of(
   typedef float Floats __attribute__((vector_size(4 * width)));
   typedef typename LaneVector<width>::Numbers Numbers;
   for (std::int64_t k = 0; k < size; k += width) {
-    Numbers own;
-    __builtin_memcpy(&own, sum + k, sizeof(own));
+    Numbers own = loaded<width, Numbers>(sum + k);
     for (int a = 0; a < 3; ++a) {
-      Floats row;
-      __builtin_memcpy(&row, rows + a * stride + k, sizeof(row));
-      own += __builtin_convertvector(row, Numbers) * change[a];
+      const Floats row = loaded<width, Floats>(rows + a * stride + k);
+      own += doubled<width, Numbers>(row, std::make_index_sequence<width>()) * change[a];
     }
-    __builtin_memcpy(sum + k, &own, sizeof(own));
+    store<width>(own, sum + k);
   }
 }
 
@@ -174,14 +193,9 @@ void add_rows_float_of(
     const float* rows, std::int64_t stride, const float* change, std::int64_t size, float* sum) {
   typedef float Eight __attribute__((vector_size(32)));
   for (std::int64_t k = 0; k < size; k += 8) {
-    Eight own;
-    __builtin_memcpy(&own, sum + k, sizeof(own));
-    for (int a = 0; a < 3; ++a) {
-      Eight row;
-      __builtin_memcpy(&row, rows + a * stride + k, sizeof(row));
-      own += row * change[a];
-    }
-    __builtin_memcpy(sum + k, &own, sizeof(own));
+    Eight own = loaded<width, Eight>(sum + k);
+    for (int a = 0; a < 3; ++a) own += loaded<width, Eight>(rows + a * stride + k) * change[a];
+    store<width>(own, sum + k);
   }
 }
 
@@ -192,28 +206,28 @@ void add_blocks_of(const float* rows,
                    const float* columns,
                    float* block) {
   typedef float Eight __attribute__((vector_size(32)));
-  Eight sum[3];
-  __builtin_memcpy(sum, block, sizeof(sum));
+  Eight a = loaded<width, Eight>(block), b = loaded<width, Eight>(block + 8);
+  Eight c = loaded<width, Eight>(block + 16);
   for (std::int64_t p = 0; p < parts; ++p, rows += 9) {
     for (int i = 0; i < 3; ++i) {
-      Eight column;
-      __builtin_memcpy(&column, columns + 8 * (std::int64_t{place[p]} + i), sizeof(column));
-      for (int a = 0; a < 3; ++a) sum[a] += column * rows[3 * a + i];
+      const Eight column = loaded<width, Eight>(columns + 8 * (std::int64_t{place[p]} + i));
+      a += column * rows[i];
+      b += column * rows[3 + i];
+      c += column * rows[6 + i];
     }
   }
-  __builtin_memcpy(block, sum, sizeof(sum));
+  store<width>(a, block);
+  store<width>(b, block + 8);
+  store<width>(c, block + 16);
 }
 
 template <int width>
 void substitute_of(const BlockFactor& l, double* w) {
   typedef double Four __attribute__((vector_size(32)));
   typedef float FourFloats __attribute__((vector_size(16)));
-  const auto load = [&](std::int64_t entry, Four* columns) {
-    for (int i = 0; i < 3; ++i) {
-      FourFloats column;
-      __builtin_memcpy(&column, l.block.data + 9 * entry + 3 * i, sizeof(column));
-      columns[i] = __builtin_convertvector(column, Four);
-    }
+  const auto column = [&](std::int64_t entry, int i) {
+    return doubled<width, Four>(loaded<width, FourFloats>(l.block.data + 9 * entry + 3 * i),
+                                std::make_index_sequence<4>());
   };
   const std::int64_t count = l.start.size - 1;
   for (std::int64_t j = 0; j < count; ++j) {
@@ -225,20 +239,15 @@ void substitute_of(const BlockFactor& l, double* w) {
     own[0] = a, own[1] = b, own[2] = c;
     for (std::int64_t k = l.start[j]; k < l.start[j + 1]; ++k) {
       double* const out = w + 4 * std::int64_t{l.row[k]};
-      Four sum, columns[3];
-      __builtin_memcpy(&sum, out, sizeof(sum));
-      load(k, columns);
-      sum -= columns[0] * a + columns[1] * b + columns[2] * c;
-      __builtin_memcpy(out, &sum, sizeof(sum));
+      const Four push = column(k, 0) * a + column(k, 1) * b + column(k, 2) * c;
+      store<width>(loaded<width, Four>(out) - push, out);
     }
   }
   for (std::int64_t j = count; j-- > 0;) {
     Four sum[3] = {};
     for (std::int64_t k = l.start[j]; k < l.start[j + 1]; ++k) {
-      Four in, columns[3];
-      load(k, columns);
-      __builtin_memcpy(&in, w + 4 * std::int64_t{l.row[k]}, sizeof(in));
-      for (int i = 0; i < 3; ++i) sum[i] += columns[i] * in;
+      const Four in = loaded<width, Four>(w + 4 * std::int64_t{l.row[k]});
+      for (int i = 0; i < 3; ++i) sum[i] += column(k, i) * in;
     }
     double* const own = w + 4 * j;
     double rest[3];
@@ -247,6 +256,45 @@ void substitute_of(const BlockFactor& l, double* w) {
     own[0] = double{d[0]} * rest[0] + double{d[1]} * rest[1] + double{d[3]} * rest[2];
     own[1] = double{d[2]} * rest[1] + double{d[4]} * rest[2];
     own[2] = double{d[5]} * rest[2];
+  }
+}
+
+/// The numbers of each vector are those that BlockLu::solve() computes.
+template <int width>
+void substitute_four_of(const BlockPairFactor& lu, double* w) {
+  typedef double Four __attribute__((vector_size(32)));
+  const auto load = [w](std::int64_t row, int i) {
+    return loaded<width, Four>(w + 12 * row + 4 * i);
+  };
+  const std::int64_t count = lu.start.size - 1;
+  for (std::int64_t j = 0; j < count; ++j) {
+    bool is_zero = true;  // as in most columns of sparse vectors
+    for (int i = 0; i < 12; ++i) is_zero = is_zero && w[12 * j + i] == 0;
+    if (is_zero) continue;
+    const Four x = load(j, 0), y = load(j, 1), z = load(j, 2);
+    for (std::int64_t e = lu.start[j] + 1; e < lu.start[j + 1]; ++e) {
+      const double* const l = lu.lower + 12 * e;
+      const std::int64_t row = lu.row[e];
+      for (int i = 0; i < 3; ++i) {
+        store<width>(load(row, i) - (x * l[i] + y * l[4 + i] + z * l[8 + i]), w + 12 * row + 4 * i);
+      }
+    }
+  }
+  for (std::int64_t j = count; j-- > 0;) {
+    Four a = load(j, 0), b = load(j, 1), c = load(j, 2);
+    for (std::int64_t e = lu.start[j] + 1; e < lu.start[j + 1]; ++e) {
+      const double* const u = lu.upper + 12 * e;
+      const std::int64_t row = lu.row[e];
+      const Four x = load(row, 0), y = load(row, 1), z = load(row, 2);
+      a -= x * u[0] + y * u[1] + z * u[2];
+      b -= x * u[4] + y * u[5] + z * u[6];
+      c -= x * u[8] + y * u[9] + z * u[10];
+    }
+    const double* const inverse = lu.inverse + 9 * j;
+    for (int i = 0; i < 3; ++i) {
+      store<width>(a * inverse[3 * i] + b * inverse[3 * i + 1] + c * inverse[3 * i + 2],
+                   w + 12 * j + 4 * i);
+    }
   }
 }
 
@@ -260,13 +308,11 @@ void subtract_products_of(const double* blocks,
   typedef double Four __attribute__((vector_size(32)));
   for (std::int64_t e = 0; e < count; ++e, blocks += 12) {
     double* const own = out + 12 * std::int64_t{slot[rows[e]]};
-    Four column[3];
-    __builtin_memcpy(column, blocks, sizeof(column));
+    const Four x = loaded<width, Four>(blocks), y = loaded<width, Four>(blocks + 4);
+    const Four z = loaded<width, Four>(blocks + 8);
     for (int c = 0; c < 3; ++c) {
-      Four sum;
-      __builtin_memcpy(&sum, own + 4 * c, sizeof(sum));
-      sum -= column[0] * factor[c] + column[1] * factor[4 + c] + column[2] * factor[8 + c];
-      __builtin_memcpy(own + 4 * c, &sum, sizeof(sum));
+      const Four push = x * factor[c] + y * factor[4 + c] + z * factor[8 + c];
+      store<width>(loaded<width, Four>(own + 4 * c) - push, own + 4 * c);
     }
   }
 }
@@ -283,6 +329,7 @@ constexpr VectorStages vector_stages_of(const char* name) {
           add_rows_float_of<width>,
           add_blocks_of<width>,
           substitute_of<width>,
+          substitute_four_of<width>,
           subtract_products_of<width>};
 }
 

@@ -17,6 +17,16 @@ struct BlockFactor {
   View<const float> diagonal;      ///< [columns][6] inverses of the lower triangles, rows first
 };
 
+/// L and U^T of L U in blocks of 3 x 3, a column of either at a time, from the diagonal on. Columns
+/// of a block have four numbers, the last of each is not used.
+struct BlockPairFactor {
+  View<const std::int32_t> row;    ///< [entries]
+  View<const std::int64_t> start;  ///< [columns + 1] of entries
+  const double* lower;             ///< [entries][12]
+  const double* upper;             ///< the same; of U with its diagonal
+  const double* inverse;           ///< [columns][9] of the pivots, row by row
+};
+
 /// Tetrahedra of a model, one array entry per tetrahedron.
 struct TetShapes {
   View<const std::int32_t> nodes;  ///< [tets][4]
@@ -59,6 +69,8 @@ struct VectorStages {
                      float* block);
   /// w = L^-T L^-1 w. @param w  [columns][4], the last of each is not used
   void (*substitute)(const BlockFactor& l, double* w);
+  /// w = U^-1 L^-1 w for four vectors at once. @param w  [columns][3][4]
+  void (*substitute_four)(const BlockPairFactor& lu, double* w);
   /// out[slot[rows[e]]] -= blocks[e] factor^T of 3x3 blocks, whose three columns have four numbers,
   /// the last of each not used.
   void (*subtract_products)(const double* blocks,
