@@ -38,11 +38,10 @@ WORKLOADS = FITTED + (
     "W6_orange_160", "W4_fish_35", "W3_waved_256_50000", "W3_waved_256_500000", "W2_rotated_256",
     "W2_rotated_384")
 MEASURED = ("2026-11-27-h200-resident.json", "2026-11-27-h200-figures.json")
-# Durations of single kernels: those of the commit c1b1dae that are the same now but for names, and
+# Durations of single kernels: those of the commit c1b1dae that are the same now but for a name, and
 # the raster of groups as docs/cuda.md has it.
 KERNELS = "2026-11-26-h200-kernels.csv"
-SAME = {"StepBeginBody": "StepBeginOp", "CellSumBody": "CellSumOp",
-        "CellScatterBody": "CellScatterOp", "CellOrderBody": "CellOrderOp"}
+SAME = {"StepBeginBody": "StepBeginOp", "CellSumBody": "CellSumOp"}
 RUNS = {"256x160x122, 700 tetrahedra": "W1_torso_700",
         "256^3 waved, 500,000 tetrahedra": "W3_waved_256_500000"}
 GROUPS = {"W3_waved_256_5000": {"raster of groups": 207.0}}

@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/base/lower_to.hpp"
 #include "kernels/base/plain_sums.hpp"
 #include "kernels/base/view.hpp"
 
@@ -15,18 +16,6 @@ TETWARP_HD std::int32_t load_relaxed(const std::int32_t* value) {
   return *static_cast<const volatile std::int32_t*>(value);
 #else
   return __atomic_load_n(value, __ATOMIC_RELAXED);
-#endif
-}
-
-/// Atomic minimum; the final value does not depend on the order of threads.
-TETWARP_HD void lower_to(std::int32_t* value, std::int32_t other) {
-#if defined(__CUDA_ARCH__)
-  atomicMin(value, other);
-#else
-  std::int32_t old = __atomic_load_n(value, __ATOMIC_RELAXED);
-  while (other < old && !__atomic_compare_exchange_n(value, &old, other, true, __ATOMIC_RELAXED,
-                                                     __ATOMIC_RELAXED)) {
-  }
 #endif
 }
 

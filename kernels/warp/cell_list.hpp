@@ -8,6 +8,7 @@
 
 #include "kernels/base/atomic_add.hpp"
 #include "kernels/base/grouped_sums.hpp"
+#include "kernels/base/lower_to.hpp"
 #include "kernels/warp/cell_cull.hpp"
 #include "kernels/warp/cell_pairs.hpp"
 
@@ -80,8 +81,19 @@ struct CellSumOp {
   }
 };
 
-/// One index = one candidate pair, and one cell of an update; any order. Copies pairs to the part
-/// of their cell in `placed`: those that stay first.
+/// The list that is made, and what is counted of it.
+struct CellListResult {
+  View<CellPair> pairs;          ///< out
+  View<CellRange> ranges;        ///< out, shape [cell_count + 1]
+  View<std::uint8_t> touched;    ///< out in an update: 1 where a pair left or came
+  SpreadCounter pair_count;      ///< pairs that do not stay are added
+  SpreadCounter accepted_count;  ///< the accepted ones of these are added
+  SpreadCounter touched_count;   ///< touched cells are added
+};
+
+/// One index = one candidate pair, and one cell or one past the last; any order. Copies pairs to
+/// the part of their cell in `placed`, those that stay first, and sets the cell's range as if no
+/// pair were accepted.
 struct CellScatterOp {
   GroupedSums candidate_sums;
   View<const CellPair> candidates;
@@ -89,80 +101,64 @@ struct CellScatterOp {
   StayingPairs staying;
   GroupedSums cells;
   View<CellPair> placed;  ///< out; pairs beyond its size are dropped
+  CellListResult result;
 
   TETWARP_HD void operator()(std::int64_t i) const {
     if (i < min_of(candidate_sums.total(), candidates.size) && candidates[i] != rejected_pair) {
       put(cells[cell_of(candidates[i])] + places[i], candidates[i]);
     }
-    if (!staying.is_update() || i >= cells.size - 1) return;
-    const std::int64_t end = end_of_cell(staying.before, i);
-    std::int64_t at = cells[i];
-    for (std::int64_t p = staying.before.ranges[i].begin; p < end; ++p) {
-      const CellPair pair = staying.before.pairs[p];
-      if (staying.moved[tet_of(pair)] == 0) put(at++, pair);
-    }
+    if (i < cells.size) set_cell(i);
   }
 
   TETWARP_HD void put(std::int64_t at, CellPair pair) const {
     if (at < placed.size) placed[at] = pair;
   }
+
+  TETWARP_HD void set_cell(std::int64_t cell) const {
+    const std::int64_t begin = min_of(cells[cell], placed.size);
+    const bool is_cell = cell + 1 < cells.size;
+    const std::int64_t end = is_cell ? min_of(cells[cell + 1], placed.size) : begin;
+    result.ranges[cell] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    if (!is_cell) return;
+    const std::int64_t come = max_of(end - begin - staying.count(cell), std::int64_t{0});
+    if (come > 0) add_to(result.pair_count, cell, come);
+    if (!staying.is_update()) return;
+    copy_staying(cell);
+    const bool is_touched = come > 0 || staying.leaves_one(cell);
+    result.touched[cell] = is_touched;
+    if (is_touched) add_to(result.touched_count, cell, 1);
+  }
+
+  TETWARP_HD void copy_staying(std::int64_t cell) const {
+    const std::int64_t end = end_of_cell(staying.before, cell);
+    std::int64_t at = cells[cell];
+    for (std::int64_t p = staying.before.ranges[cell].begin; p < end; ++p) {
+      const CellPair pair = staying.before.pairs[p];
+      if (staying.moved[tet_of(pair)] == 0) put(at++, pair);
+    }
+  }
 };
 
-/// One index = one pair, and one cell or one past the last; any order. Sorts the pairs of each cell
-/// by tetrahedron, as many steps per pair as its cell has pairs, and sets the cell's range.
+/// One index = one pair; any order. Sorts the pairs of each cell by tetrahedron, as many steps per
+/// pair as its cell has pairs, and ends the cell's range after its first accepted pair.
 struct CellOrderOp {
   GroupedSums cells;
   View<const CellPair> placed;
   StayingPairs staying;
-  View<CellPair> pairs;          ///< out
-  View<CellRange> ranges;        ///< out, shape [cell_count + 1]
-  View<std::uint8_t> touched;    ///< out in an update: 1 where a pair left or came
-  SpreadCounter pair_count;      ///< pairs that do not stay are added
-  SpreadCounter accepted_count;  ///< the accepted ones of these are added
-  SpreadCounter touched_count;   ///< touched cells are added
+  CellListResult result;
 
   TETWARP_HD void operator()(std::int64_t i) const {
-    if (i < within(cells.total())) {
-      const CellPair pair = placed[i];
-      const std::int64_t begin = cells[cell_of(pair)], end = end_of(cell_of(pair));
-      pairs[begin + lower_count(begin, end, tet_of(pair))] = pair;
-    }
-    if (i < cells.size) set_range(i);
-  }
-
-  TETWARP_HD std::int64_t within(std::int64_t position) const {
-    return min_of(position, placed.size);
-  }
-  TETWARP_HD std::int64_t end_of(std::int64_t cell) const { return within(cells[cell + 1]); }
-
-  /// Pairs in [begin, end) of tetrahedra below `tet`.
-  TETWARP_HD std::int64_t lower_count(std::int64_t begin, std::int64_t end, int tet) const {
-    std::int64_t count = 0;
-    for (std::int64_t p = begin; p < end; ++p) count += tet_of(placed[p]) < tet ? 1 : 0;
-    return count;
-  }
-
-  TETWARP_HD void set_range(std::int64_t cell) const {
-    const bool is_cell = cell + 1 < cells.size;
-    const std::int64_t begin = within(cells[cell]), end = is_cell ? end_of(cell) : begin;
-    const std::int64_t stay = is_cell ? staying.count(cell) : 0;
-    std::int64_t accepted = 0, first = -1;  // lowest tetrahedron that holds the whole cell
-    for (std::int64_t p = begin; p < end; ++p) {
-      if (!is_accepted(placed[p])) continue;
-      accepted += p - begin >= stay ? 1 : 0;
-      if (first < 0 || tet_of(placed[p]) < first) first = tet_of(placed[p]);
-    }
-    const std::int64_t past =
-        first < 0 ? end : begin + lower_count(begin, end, static_cast<int>(first)) + 1;
-    ranges[cell] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(past)};
-    if (!is_cell) return;
-    const std::int64_t come = max_of(end - begin - stay, std::int64_t{0});
-    if (come > 0) add_to(pair_count, cell, come);
-    if (accepted > 0) add_to(accepted_count, cell, accepted);
-    if (!staying.is_update()) return;
-    const bool is_touched = come > 0 || staying.leaves_one(cell);
-    touched[cell] = is_touched;
-    if (is_touched) add_to(touched_count, cell, 1);
+    if (i >= min_of(cells.total(), placed.size)) return;
+    const CellPair pair = placed[i];
+    const std::int64_t cell = cell_of(pair), begin = cells[cell];
+    const auto count = static_cast<int>(min_of(cells[cell + 1], placed.size) - begin);
+    int lower = 0;  // 32 bits: half of the operations of the loop with 64
+    for (int k = 0; k < count; ++k) lower += tet_of(placed[begin + k]) < tet_of(pair) ? 1 : 0;
+    const std::int64_t at = begin + lower;
+    result.pairs[at] = pair;
+    if (!is_accepted(pair)) return;
+    lower_to(&result.ranges[cell].end, static_cast<std::uint32_t>(at + 1));
+    if (i - begin >= staying.count(cell)) add_to(result.accepted_count, cell, 1);
   }
 };
 
@@ -181,7 +177,8 @@ struct CellListMemory {
 /// @param candidate_sums  sums of the numbers of candidate pairs of each tetrahedron
 /// @param cull       all but `pairs`
 /// @param memory     scratch
-/// @param order      all but `cells` and `placed`
+/// @param staying    of the step before, in an update
+/// @param result     out
 /// @param list_size  out, number of pairs including those that found no room, shape [1]
 ///
 /// Determinism: same bits for the same setups; places depend on the order of threads, the sorted
@@ -192,23 +189,22 @@ void cell_list(Exec& exec,
                const GroupedSums& candidate_sums,
                CellCullOp<Verdict> cull,
                const CellListMemory& memory,
-               CellOrderOp order,
+               const StayingPairs& staying,
+               const CellListResult& result,
                View<std::int64_t> list_size) {
   const std::int64_t cells = memory.cells.size - 1;
-  if (order.staying.is_update()) {
-    exec.for_each("warp/cull", cells, CellStayOp{order.staying, memory.cell_counts});
+  if (staying.is_update()) {
+    exec.for_each("warp/cull", cells, CellStayOp{staying, memory.cell_counts});
   }
   cull.pairs = memory.candidates;
   exec.for_each_item("warp/cull", candidate_sums, memory.candidates.size,
                      CellCountOp<Verdict>{cull, memory.places, memory.cell_counts});
   exec.grouped_scan("warp/cull", cells, CellSumOp{memory.cell_counts, list_size}, memory.cells);
-  const std::int64_t stay_cells = order.staying.is_update() ? cells : 0;
-  exec.for_each("warp/cull", max_of(memory.candidates.size, stay_cells),
-                CellScatterOp{candidate_sums, memory.candidates, memory.places, order.staying,
-                              memory.cells, memory.placed});
-  order.cells = memory.cells;
-  order.placed = memory.placed;
-  exec.for_each("warp/cull", max_of(memory.placed.size, cells + 1), order);
+  exec.for_each("warp/cull", max_of(memory.candidates.size, cells + 1),
+                CellScatterOp{candidate_sums, memory.candidates, memory.places, staying,
+                              memory.cells, memory.placed, result});
+  exec.for_each("warp/cull", memory.placed.size,
+                CellOrderOp{memory.cells, memory.placed, staying, result});
 }
 
 }  // namespace tetwarp

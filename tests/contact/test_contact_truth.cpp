@@ -64,7 +64,8 @@ TEST(ContactTruth, DirectionsOfGrowthDoNotHideSolutions) {
   }
 }
 
-/// Law: each of the last resorts has problems that no single method solves.
+/// Law: the last resorts, pivoting and starts from random impulses, solve problems that no single
+/// method does. The latter count as Newton's method in the report.
 TEST(ContactTruth, OtherStartsSolveWhatNoSingleMethodDoes) {
   struct Only {
     unsigned seed;

@@ -74,15 +74,9 @@ Made make_list(const Stages<CpuExec>& stages,
   cell_list(exec, candidate_sums.view(), CellCullOp<Verdict>{stages.setups, verdict, {}, frame, {}},
             {whole_view(candidates), whole_view(numbers), whole_view(counts), cell_sums.view(),
              whole_view(placed)},
-            {{},
-             {},
-             {before, moved, whole_view(stay)},
-             whole_view(made.pairs),
-             whole_view(made.ranges),
-             whole_view(touched),
-             whole_view(fresh),
-             whole_view(accepted),
-             whole_view(touched_count)},
+            {before, moved, whole_view(stay)},
+            {whole_view(made.pairs), whole_view(made.ranges), whole_view(touched),
+             whole_view(fresh), whole_view(accepted), whole_view(touched_count)},
             whole_view(size));
   exec.drain();
   const auto sum = [](const std::vector<std::int64_t>& values) {
@@ -154,13 +148,15 @@ TEST(CellListEmulated, UpdatesKeepThePairsThatStay) {
   const Stages<CpuExec> stages(arrays, input);
   const Expected expected(cpu, stages, input.frame);
   std::vector<std::uint8_t> moved(static_cast<std::size_t>(stages.setups.size));
-  std::int64_t fresh = 0, touched = 0;
+  std::int64_t fresh = 0, accepted = 0, touched = 0;
   for (std::size_t t = 0; t < moved.size(); ++t) moved[t] = t % 3 == 0;
   for (std::int64_t c = 0; c + 1 < std::ssize(expected.ranges); ++c) {
     const std::int64_t before = fresh;
     for (std::int64_t p = expected.list().ranges[c].begin; p < end_of_cell(expected.list(), c);
          ++p) {
-      fresh += tet_of(expected.pairs[static_cast<std::size_t>(p)]) % 3 == 0;
+      const CellPair pair = expected.pairs[static_cast<std::size_t>(p)];
+      fresh += tet_of(pair) % 3 == 0;
+      accepted += tet_of(pair) % 3 == 0 && is_accepted(pair);
     }
     touched += fresh > before;
   }
@@ -170,6 +166,8 @@ TEST(CellListEmulated, UpdatesKeepThePairsThatStay) {
 
   expect_same(made, expected);
   EXPECT_EQ(made.fresh, fresh);
+  EXPECT_GT(accepted, 0);
+  EXPECT_EQ(made.accepted, accepted);
   EXPECT_EQ(made.touched, touched);
 }
 

@@ -3,6 +3,7 @@
 #include "host/contact/solve/island_fallback.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -173,27 +174,34 @@ void IslandFallback::finish_automatic() {
     IslandRestart(attempt_).run();
     last_.clear();
   }
-  if (!attempt_.is_done() && ends_before_sweeps()) polish_while_better();
+  if (ends_before_sweeps()) polish_while_better();
   if (!attempt_.is_done()) sweep_while_cheaper(infinity, usual_sweeps);
   polish_while_better();
   if (!is_searched && !attempt_.is_done()) find_unbounded();
 }
 
-/// Whether all steps that Newton's method has cost less than the sweeps that are left.
+/// Whether all steps that Newton's method has cost less than the sweeps that are left. With a limit
+/// of its steps or of time it keeps them for what the sweeps leave.
 bool IslandFallback::ends_before_sweeps() {
+  constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
+  const ContactOptions& options = attempt_.options();
+  if (options.max_newton != unlimited || std::isfinite(options.max_seconds)) return false;
   const double steps =
       2.0 * static_cast<double>(max_newton_steps(attempt_.island().contact_count()));
   const std::int64_t left = attempt_.max_sweeps() - attempt_.outcome().sweeps;
   return steps * attempt_.sweeps_per_newton_step() < static_cast<double>(left);
 }
 
-/// Newton's method as long as it halves the error: each better start may converge.
+/// Newton's method as long as it halves the error: each better start may converge. Where nothing
+/// has changed since it ended, it would do the same again.
 void IslandFallback::polish_while_better() {
+  if (attempt_.excess() == polished_) return;
   double before = infinity;
   while (!attempt_.is_done() && attempt_.excess() < before / 2) {
     before = attempt_.excess();
     attempt_.polish({});
   }
+  polished_ = attempt_.excess();
 }
 
 /// Continues with sweeps until Newton's method promises to be cheaper; see method_choice.hpp.

@@ -2,6 +2,7 @@
 /// What follows on an island where the first sweeps have not converged: other methods, and
 /// certificates that no method can succeed.
 #pragma once
+#include <limits>
 #include <vector>
 
 #include "host/contact/solve/engine_result.hpp"
@@ -20,7 +21,7 @@ namespace tetwarp {
 /// 3. Contradictions, by more sweeps and by a certificate.
 /// 4. A direction in which impulses can grow without bound; if there is one, other starts.
 /// 5. All sweeps that are left, then Newton's method as long as it improves the impulses; before
-///    these sweeps, too, where all its steps cost less.
+///    these sweeps, too, where all its steps cost less and neither they nor time are limited.
 ///
 /// The method `newton` does 1, Newton's method, 3 and 4, without other starts. Methods of sweeps do
 /// 3 and 4, without other starts; the certificates only where many sweeps are allowed. Islands with
@@ -65,7 +66,9 @@ class IslandFallback {
   ContradictionMemory& memory_;
   EngineResult& result_;
   SweepChoice sweeps_;
-  double left_ = 0;           ///< of sweeps_left(), of the last sweeps
+  double polished_ =
+      std::numeric_limits<double>::infinity();  ///< excess where Newton's method ended
+  double left_ = 0;                             ///< of sweeps_left(), of the last sweeps
   std::vector<double> last_;  ///< impulses from which sweep_while_cheaper() goes on; empty: current
 };
 

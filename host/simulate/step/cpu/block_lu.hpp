@@ -32,7 +32,8 @@ class BlockLu {
   bool factor();
   /// x = A^-1 x, [3 count]. @pre factor()
   void solve(std::span<double> x);
-  /// The same for three vectors at once, [3][3 count]: the numbers of three calls.
+  /// The same for three vectors at once, [3][3 count]: the numbers of three calls, except
+  /// for signs of zeros.
   void solve_three(std::span<double> x);
 
  private:
