@@ -82,10 +82,12 @@ bench_warp_python() {
   PYTHONPATH=$folder/python "$python" "$program" all "$folder/warp_python" "$results-python.json" &&
     "$python" "$program" table "$results-python.json" >"$folder/warp_python.md" || return
   program=$root/bench/peers/warp_memory.py
+  local status=0
   PYTHONPATH=$folder/python "$python" "$program" all "$folder/tetwarp" "$folder/warp_memory" \
     "$results-python.json" && "$python" "$program" table "$results-python.json" >>"$folder/warp_python.md" ||
-    echo "warp_memory.py failed"
+    status=1
   rm -rf "$folder/warp_memory"  # 6 GB
+  return "$status"
 }
 
 # One cantilever in several simulators, on one thread; a program that is missing is left out.

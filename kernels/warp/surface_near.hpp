@@ -83,7 +83,7 @@ struct TriangleAxes {
 };
 
 /// Finds the nearest triangles of positions within a ball, each with the bits of find_nearest().
-/// For the host: it holds the triangles that may be the nearest ones, 29 kB.
+/// For the host: it holds the triangles that may be the nearest ones, 37 kB.
 class SurfaceNear {
  public:
   static constexpr int lanes = 4;  ///< positions of a row
@@ -104,7 +104,7 @@ class SurfaceNear {
     collect();
   }
 
-  /// Otherwise so many triangles are near that it does without their list.
+  /// Whether all near triangles are in the list; else it is not used.
   TETWARP_ANY_EXEC bool is_complete() const { return count_ <= most; }
 
   /// No position of the ball is within reach of the surface.

@@ -298,5 +298,6 @@ del file
 opened.wait()
 print("dropped")
 """)
-    done = subprocess.run([sys.executable, code], text=True, capture_output=True, timeout=60, check=False)
+    done = subprocess.run([sys.executable, code], text=True, capture_output=True, timeout=60, check=False,
+                          env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)})
     assert done.returncode == 0 and "dropped" in done.stdout, done.stdout + done.stderr

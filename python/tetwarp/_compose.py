@@ -89,15 +89,22 @@ def _inverse_matrix(value: Any, name: str) -> np.ndarray:
         raise ValueError(f"{name}: {error}") from None
 
 
+def _finite(link: tuple[Any, np.ndarray], name: str) -> tuple[Any, np.ndarray]:
+    if not np.isfinite(link[1]).all():
+        raise ValueError(f"{name}: a displacement is not finite; set such ones to 0 first")
+    return link
+
+
 def _compose_link(value: Any, name: str, is_inverse: bool) -> tuple[Any, bool]:
     """A transform as the library takes it, and whether its inverse is meant."""
     if isinstance(value, InverseMesh) or (isinstance(value, (tuple, list)) and len(value) == 3):
         rest, cells, deformed = value
         return _mesh_link(rest, cells, deformed, f"{name}: "), is_inverse
     if not is_inverse:
-        return link_of(value, name), False
+        link = link_of(value, name)
+        return _finite(link, name) if isinstance(link, tuple) else link, False
     if isinstance(value, (Field, Volume)):  # of either convention
-        return displacements_of(value, name), True
+        return _finite(displacements_of(value, name), name), True
     return _inverse_matrix(value, name), False
 
 
@@ -196,7 +203,7 @@ def _inverse_mesh(rest: Any, cells: Any, deformed: Any) -> InverseMesh:
         warn(f"deformed: folds: {check['inverted']} inverted tetrahedra, {check['folded']} of "
              f"{check['points']} points come back to another place; there the inverse is that of the "
              "cell of the lowest number")
-    return InverseMesh(end, joined_cells(tets, hexes, mids), start, **check)
+    return InverseMesh(end.copy(), joined_cells(tets, hexes, mids), start.copy(), **check)
 
 
 def invert(
@@ -250,7 +257,7 @@ def invert(
             raise ValueError("reference: is for fields; the inverse of a mesh is a mesh")
         return _inverse_mesh(transform, cells, deformed)
     if isinstance(transform, (Field, Volume)):
-        link = displacements_of(transform, "transform")
+        link = _finite(displacements_of(transform, "transform"), "transform")
         grid = reference_grid(transform if reference is None else reference)
         return _composed([(link, True)], grid, threads, progress)
     if reference is not None:

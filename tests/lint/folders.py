@@ -48,7 +48,7 @@ ALLOWED = {
     "host/warp/cpu/rows": ["host/warp", "host/warp/stages", "host/base", *WARP],
     "host/warp/cpu": [
         "host/warp", "host/warp/stages", "host/warp/cpu/rows", "host/base", "host/exec", *WARP],
-    "host/warp/compose": ["host/warp", "host/warp/cpu", "host/base", *WARP],
+    "host/warp/compose": ["host/warp", "host/base", *WARP],
     "host/warp/cuda": [
         "host/warp", "host/warp/stages", "host/base", "kernels/exec", "kernels/warp/cuda", *WARP],
     "host/reference/linear": [],

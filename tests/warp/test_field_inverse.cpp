@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <tetwarp/resample.hpp>
 #include <vector>
@@ -175,6 +177,22 @@ TEST(FieldInverse, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(second, one);
   EXPECT_GT(result.not_found.size(), 0U);
   EXPECT_LT(result.not_found.size(), 10000U);
+}
+
+/// A position that is not finite is never found, and stays.
+TEST(FieldInverse, LeavesPositionsThatAreNotFinite) {
+  const Grid grid = turned_grid(9);
+  const Transform field = DisplacementField{
+      grid, std::vector<float>(3 * static_cast<std::size_t>(grid.voxel_count()), 0.1F)};
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const Point3 center = center_of(grid);
+  std::vector<Point3> points{center, {none, 0, 0}, {0, HUGE_VAL, 0}};
+
+  const InverseResult result = FieldInverse(field).apply(points, 1);
+
+  EXPECT_EQ(result.not_found, (std::vector<std::size_t>{1, 2}));
+  EXPECT_NEAR(points[0][0], center[0] - 0.1F, 1e-6);
+  EXPECT_EQ(points[2], (Point3{0, HUGE_VAL, 0}));
 }
 
 /// A shift by 3 voxels along i: what is within 3 voxels of the first face of the grid, which ends

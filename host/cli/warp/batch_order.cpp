@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <stdexcept>
 #include <string_view>
@@ -17,7 +16,6 @@
 #include "host/cli/job/job_plan.hpp"
 #include "host/cli/job/provenance.hpp"
 #include "host/cli/warp/transform_job.hpp"
-#include "io/files/extension.hpp"
 #include "io/files/numbered_files.hpp"
 
 namespace tetwarp::cli {

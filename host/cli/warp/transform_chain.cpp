@@ -6,15 +6,15 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
 
 namespace tetwarp::cli {
 namespace {
-constexpr std::string_view inverse_mark = "^-1";
-
 /// The links of a chain, or the only transform.
 std::vector<Transform> links_of_file(Transform transform) {
   std::vector<Transform> links;
@@ -33,10 +33,9 @@ ChainLink::ChainLink(const std::string& word,
                      const MeshReadOptions& mesh,
                      const std::optional<Axes>& axes,
                      const std::optional<Point3>& world)
-    : path_(word),
-      is_inverse_(word.ends_with(inverse_mark)),
+    : path_(path_of(word)),
+      is_inverse_(path_ != word),
       options_{.axes = axes, .world = world, .step = 0, .takes_inverted = true} {
-  if (is_inverse_) path_.resize(path_.size() - inverse_mark.size());
   if (kind_of(path_) != FileKind::mesh && is_transform_file(path_, options_)) {
     field_steps_ = transform_step_count(path_, options_);
     if (field_steps_ == 1) read_transforms();
@@ -107,7 +106,7 @@ std::vector<std::string> lines_of(const ComposeNotes& notes, std::int64_t count)
   std::vector<std::string> lines;
   if (notes.outside > 0) {
     lines.push_back(
-        fmt::format("{} of {} positions were in no cell of a mesh and kept their place there",
+        fmt::format("{} times a position (of {}) was in no cell of a mesh and kept its place there",
                     notes.outside, count));
   }
   if (notes.straightened > 0) {

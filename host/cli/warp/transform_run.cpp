@@ -118,7 +118,7 @@ void TransformRun::plan_memory() {
     displacements +=
         parts_.fields[n].voxel_bytes * static_cast<double>(fields[n]->grid.voxel_count());
   }
-  if (inverts()) displacements += compose_memory(plan_.output_grid);
+  if (inverts()) displacements += compose_memory(plan_.output_grid, arguments_.warp.threads);
   fixed_bytes_ = fixed_memory(plan_, arguments_, MeshHeader{});
   plan_.memory = fixed_bytes_ + samples + displacements;
   set_memory_limit(plan_, arguments_);

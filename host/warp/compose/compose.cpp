@@ -31,18 +31,20 @@ std::vector<AppliedLink> applied_links(std::span<const ComposeLink* const> links
   for (const ComposeLink* const link : links) {
     AppliedLink& next = applied.emplace_back(AppliedLink{*link, {}});
     const auto* const transform = std::get_if<Transform>(&link->transform);
-    if (transform != nullptr && link->is_inverse &&
-        !std::holds_alternative<AffineTransform>(*transform)) {
-      next.inverse.emplace(*transform);
+    if (transform == nullptr || !link->is_inverse) continue;
+    if (!std::holds_alternative<DisplacementField>(*transform) &&
+        !std::holds_alternative<BSplineTransform>(*transform)) {
+      throw std::invalid_argument("links: only meshes, fields and splines are inverted here");
     }
+    next.inverse.emplace(*transform);
   }
   return applied;
 }
 
-/// Positions on their way through a chain.
-class PointsOnTheirWay {
+/// Positions that the links of a chain move, one after the other.
+class MovedPositions {
  public:
-  PointsOnTheirWay(std::vector<Point3> points, std::span<std::uint8_t> reached, int threads)
+  MovedPositions(std::vector<Point3> points, std::span<std::uint8_t> reached, int threads)
       : points_(std::move(points)), reached_(reached), threads_(threads) {}
 
   const std::vector<Point3>& points() const { return points_; }
@@ -57,8 +59,6 @@ class PointsOnTheirWay {
       for (const std::size_t p : result.not_found) mark(p);
       notes.not_inverted += std::ssize(result.not_found);
       notes.largest_residual = std::max(notes.largest_residual, result.largest_residual);
-    } else if (is_inverse) {
-      move_by(inverse_of(std::get<AffineTransform>(std::get<Transform>(transform))));
     } else {
       move_by(std::get<Transform>(transform));
     }
@@ -121,6 +121,11 @@ ComposeNotes compose_into(std::span<const ComposeLink* const> links,
                           const ComposeTarget& target,
                           const Progress& progress) {
   check_grid(grid, "grid of the field");
+  const auto voxels = static_cast<std::size_t>(grid.voxel_count());
+  if (links.empty() || target.displacements.size() != 3 * voxels ||
+      (!target.reached.empty() && target.reached.size() != voxels)) {
+    throw std::invalid_argument("links: none, or arrays of another size than the grid");
+  }
   threads = thread_count(threads);
   std::ranges::fill(target.reached, std::uint8_t{1});
   ComposeNotes notes;
@@ -135,17 +140,18 @@ ComposeNotes compose_into(std::span<const ComposeLink* const> links,
     const std::vector<Point3> centers = centers_of(grid, begin, end);
     const auto first = static_cast<std::size_t>(begin * slice);
     const bool marks = !target.reached.empty();
-    PointsOnTheirWay way(
+    MovedPositions moved(
         centers, marks ? target.reached.subspan(first, centers.size()) : target.reached, threads);
-    for (AppliedLink& link : applied) {
-      way.apply(
-          link, [&] { tell(begin); }, notes);
-      tell(begin);
+    for (std::size_t n = 0; n < applied.size(); ++n) {
+      const auto done = begin + (end - begin) * static_cast<std::int64_t>(n) / std::ssize(applied);
+      tell(done);
+      moved.apply(
+          applied[n], [&] { tell(done); }, notes);
     }
     for (std::size_t v = 0; v < centers.size(); ++v) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         target.displacements[3 * (first + v) + axis] =
-            static_cast<float>(way.points()[v][axis] - centers[v][axis]);
+            static_cast<float>(moved.points()[v][axis] - centers[v][axis]);
       }
     }
     tell(end);
@@ -165,11 +171,13 @@ ComposedField compose(std::span<const ComposeLink* const> links,
   return result;
 }
 
-double compose_memory(const Grid& grid) {
-  constexpr double point_bytes = 60;  // places before and after, and lists of FieldInverse
+double compose_memory(const Grid& grid, int threads) {
+  constexpr double point_bytes = 60;  // places before and after, and which have no inverse yet
+  constexpr double thread_bytes = 8 << 20;  // of the searches of FieldInverse
   const std::int64_t slices = std::min(grid.dims[2], slices_of_a_part(grid));
   return 3.0 * sizeof(float) * static_cast<double>(grid.voxel_count()) +
-         point_bytes * static_cast<double>(grid.dims[0] * grid.dims[1] * slices);
+         point_bytes * static_cast<double>(grid.dims[0] * grid.dims[1] * slices) +
+         thread_bytes * thread_count(threads);
 }
 
 AffineTransform inverse_of(const AffineTransform& affine) {

@@ -24,10 +24,10 @@ struct MovedMesh {
 /// One of the transforms that compose() joins, from positions of the output to those in the source.
 struct ComposeLink {
   std::variant<MovedMesh, Transform> transform;  ///< no TransformChain
-  bool is_inverse = false;                       ///< its inverse is meant
+  bool is_inverse = false;  ///< its inverse is meant; of an affine transform take inverse_of()
 };
 
-/// What positions met on their way.
+/// What kept positions from being moved, summed over the links.
 struct ComposeNotes {
   std::int64_t outside = 0;       ///< of a mesh: they kept their place there
   std::int64_t straightened = 0;  ///< of a mesh: moved by straight tetrahedra, see CurvedMesh
@@ -52,8 +52,8 @@ struct ComposedField {
 /// @param links     at least one; the first one is applied to positions of the output first
 /// @param threads   0: all cores; any number gives the same bits
 /// @param progress  may be empty
-/// @throws std::invalid_argument  as map_points() and resample(), an affine transform to invert is
-///                                singular
+/// @throws std::invalid_argument  as map_points() and resample(); no link, or one that is not
+///                                inverted here
 /// @throws Cancelled              when `progress` returned false
 TETWARP_EXPORT ComposedField compose(std::span<const ComposeLink* const> links,
                                      const Grid& grid,
@@ -67,8 +67,8 @@ TETWARP_EXPORT ComposeNotes compose_into(std::span<const ComposeLink* const> lin
                                          const ComposeTarget& target,
                                          const Progress& progress = {});
 
-/// Memory that compose_into() takes with `displacements` [byte].
-TETWARP_EXPORT double compose_memory(const Grid& grid);
+/// Memory that compose_into() takes with `displacements`, without meshes and transforms [byte].
+TETWARP_EXPORT double compose_memory(const Grid& grid, int threads);
 
 /// The inverse. Throws std::invalid_argument when the matrix is singular.
 TETWARP_EXPORT AffineTransform inverse_of(const AffineTransform& affine);

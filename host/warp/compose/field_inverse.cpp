@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <cstdint>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -22,6 +22,7 @@ namespace tetwarp {
 namespace {
 constexpr int most_steps = 50;
 constexpr int most_halvings = 10;
+constexpr std::size_t most_searches = 1 << 14;  ///< of a thread at once, about 400 bytes each
 
 /// A point on its way to an x.
 struct Search {
@@ -113,17 +114,16 @@ class PointsInverse {
 
   /// Adds a search, and runs all where they are many.
   void begin(const Search& search) {
-    constexpr std::size_t most_at_once = 1 << 16;
     searches_.push_back(search);
-    if (searches_.size() == most_at_once) run();
+    if (searches_.size() == most_searches) run();
   }
 
   /// Makes Newton steps. A search ends when its residual is small enough, or a step does not reduce
   /// it.
   void run() {
-    progress_();
     evaluate(searches_);
     for (int n = 0; !searches_.empty(); ++n) {
+      progress_();
       keep_found();
       if (n == most_steps) searches_.clear();
       make_step();
@@ -222,16 +222,19 @@ class Searches {
            std::vector<Point3>& points,
            int threads,
            const std::function<void()>& progress)
-      : field_(field),
-        points_(points),
-        threads_(threads),
-        progress_(progress),
-        left_(points.size()) {
-    std::iota(left_.begin(), left_.end(), std::size_t{0});
+      : field_(field), points_(points), threads_(threads), progress_(progress) {
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      (is_finite(points[p]) ? left_ : not_finite_).push_back(p);
+    }
   }
 
   bool are_done() const { return left_.empty(); }
-  InverseResult result() && { return {std::move(left_), largest_residual_}; }
+  InverseResult result() && {
+    std::vector<std::size_t> not_found = std::move(left_);
+    not_found.insert(not_found.end(), not_finite_.begin(), not_finite_.end());
+    std::ranges::sort(not_found);
+    return {std::move(not_found), largest_residual_};
+  }
 
   /// Calls search(PointsInverse&) for all points without an x.
   template <class Method>
@@ -270,7 +273,7 @@ class Searches {
   std::vector<Point3>& points_;  ///< those without an x are targets
   int threads_;
   const std::function<void()>& progress_;
-  std::vector<std::size_t> left_;  ///< of points_
+  std::vector<std::size_t> left_, not_finite_;  ///< of points_
   double largest_residual_ = 0;
 };
 }  // namespace

@@ -3,6 +3,7 @@
 #include "host/warp/compose/image_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <variant>
 

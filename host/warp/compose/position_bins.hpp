@@ -1,5 +1,5 @@
 /// @file position_bins.hpp
-/// Positions in a box are found.
+/// Finds the positions in a box.
 #pragma once
 #include <array>
 #include <cstddef>
