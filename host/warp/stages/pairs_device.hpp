@@ -155,12 +155,9 @@ class DevicePairs : public PairState<Exec> {
                 {candidates_.view(now.size), places_.view(now.size), cell_counts_.view(cells),
                  view(cell_sums_, cells), placed_.view(now.size)},
                 staying,
-                {now.pairs.view(now.size),
-                 now.ranges.view(cells + 1),
-                 touched_[now_].view(is_update_ ? cells : 0),
-                 spread_over(spread.pairs),
-                 spread_over(spread.accepted),
-                 spread_over(spread.touched_cells)},
+                {now.pairs.view(now.size), now.ranges.view(cells + 1),
+                 touched_[now_].view(is_update_ ? cells : 0), spread_over(spread.pairs),
+                 spread_over(spread.accepted), spread_over(spread.touched_cells)},
                 {&this->counters()->work.merged_pairs, 1});
     };
     if (this->uses_masks(switches)) {
