@@ -6,7 +6,7 @@ tetwarp_sources(tetwarp_view_parts host/view
   input_log.cpp live_simulation.cpp live_start.cpp live_volumes.cpp overlay_text.cpp pick.cpp
   ray_quality.cpp view_options.cpp view_scene.cpp view_tools.cpp volume_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/devices
-  input_device.cpp simulated_device.cpp)
+  input_device.cpp number_line.cpp simulated_device.cpp tracked_names.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/hand
   device_hand.cpp room_place.cpp scene_hand.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/look

@@ -184,6 +184,10 @@ TEST(RoomFile, NamesWhatIsWrong) {
       R"("lower_left": [-1, -1, -1], "lower_right": [1, -1, -1], "upper_right": [1, 1, -1])";
   EXPECT_EQ(parse_room(head + R"({"name": "a", )" + corners + "}]}", "r").focus, 1);
   refuses("{}", "tetwarp_room");
+  refuses(
+      R"({"tetwarp_room": 1, "tracker": "Head@x-vrsh://host/program", "screens": [{"name": "a", )" +
+          corners + "}]}",
+      "tracker 'Head@x-vrsh://host/program': expected");
   refuses(head + "]}", "screens: there are none");
   refuses(head + "{" + corners + "}]}", "name");
   refuses(head + R"({"name": "a", "lower_left": [0, 0], )" + corners + "}]}", "lower_left");

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
+#include "host/view/devices/tracked_names.hpp"
 #include "host/view/screens/off_axis.hpp"
 
 namespace tetwarp::view {
@@ -44,10 +45,6 @@ void check_screen(const Screen& screen, const Point3& observer) {
 }
 }  // namespace
 
-bool is_in_world(const Point3& x) {
-  return std::ranges::all_of(x, [](double part) { return std::abs(part) < largest_world; });
-}
-
 void check_room(Room& room) {
   if (room.screens.empty()) throw std::invalid_argument("screens: there are none");
   if (!is_in_world(room.observer)) {
@@ -59,6 +56,7 @@ void check_room(Room& room) {
   if (!(room.wait > 0 && room.wait <= 60)) {
     throw std::invalid_argument("wait: is above 0 and at most 60 s");
   }
+  if (!room.tracker.empty()) tracked_names(room.tracker);
   std::set<std::string> names;
   for (const Screen& screen : room.screens) {
     if (screen.name.empty()) throw std::invalid_argument("screens: each needs a name");

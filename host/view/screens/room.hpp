@@ -17,10 +17,6 @@ namespace tetwarp::view {
 /// Limits of rooms, of their files and of messages alike.
 inline constexpr std::int32_t farthest_window = 65535;  ///< left and top, either way [pixel]
 inline constexpr std::int32_t largest_window = 16384;   ///< width and height [pixel]
-inline constexpr double largest_world = 1e9;            ///< a coordinate [m]
-
-/// Whether all coordinates are below largest_world.
-bool is_in_world(const Point3& x);
 
 /// How a screen shows two eyes, or which one.
 enum class Stereo : std::uint8_t { none, side_by_side, anaglyph, quad_buffer, left, right };
