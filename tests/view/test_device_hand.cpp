@@ -34,11 +34,13 @@ class ToldDevice : public InputDevice {
   const std::string& suffers_;
 };
 
-/// A hand with one device, and what it did. A body is everywhere, 2 m along each ray.
+/// A hand with two devices, the other of which says nothing if not told to, and what they did. A
+/// body is everywhere, 2 m along each ray.
 struct TestHand {
   TestHand() {
     std::vector<std::unique_ptr<InputDevice>> devices;
     devices.push_back(std::make_unique<ToldDevice>(says, suffers));
+    devices.push_back(std::make_unique<ToldDevice>(other_says, other_suffers));
     HandActions actions;
     actions.meet = [this](const EyeRay& ray) -> std::optional<Pick> {
       met.push_back(ray);
@@ -56,8 +58,8 @@ struct TestHand {
   Camera camera{.eye = {0, -2, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}};
   // x, y and z of the room are x, z and -y of the world, where a meter of the room is 0.5 m.
   RoomPlace room{{0, 1, 0}, {0, -2, 0}, {{{0.5, 0, 0}, {0, 0, 0.5}, {0, -0.5, 0}}}};
-  DeviceState says;
-  std::string suffers;
+  DeviceState says, other_says;
+  std::string suffers, other_suffers;
   bool is_empty = false;
   std::vector<EyeRay> met, probed;
   std::vector<Pick> grabbed;
@@ -123,7 +125,6 @@ TEST(DeviceHand, WhatAWandHoldsMovesRigidlyWithIt) {
     EXPECT_EQ(to, test.pulled.back());
     expect_close(from, test.room.world_of(pose.position), 1e-12);
     EXPECT_NEAR(norm(minus(to, from)), 2, 1e-12);
-    test.says.grabs = true;
   }
   const std::size_t rays = test.met.size();
   test.says.grabs = false;
@@ -181,6 +182,63 @@ TEST(DeviceHand, AWandThatPointsAtNothingHoldsNothing) {
   EXPECT_TRUE(test.pulled.empty());
   EXPECT_FALSE(test.hand->let_go());
   EXPECT_NEAR(norm(minus(test.hand->rays()[0][1], test.hand->rays()[0][0])), 2, 1e-12);
+}
+
+/// Another device takes nothing meanwhile, also not when the first one has let go while its button
+/// is still held.
+TEST(DeviceHand, OneDeviceHoldsAtATime) {
+  TestHand test;
+  test.says.pose = DevicePose{};
+  test.other_says.pose = DevicePose{{1, 1, 0}, {1, 0, 0, 0}};
+  test.says.grabs = true;
+  test.update();
+  test.other_says.grabs = true;
+  test.update();
+  test.other_says.pose->position = {2, 1, 0};
+  test.update();
+  test.other_says.grabs = false;
+  test.update();
+  EXPECT_EQ(test.grabbed.size(), 1u);
+  EXPECT_TRUE(test.pulled.empty());
+  EXPECT_EQ(test.releases, 0) << "what the first one holds stays held";
+  test.other_says.grabs = true;
+  test.update();
+  test.says.grabs = false;
+  test.update();
+  EXPECT_EQ(test.releases, 1);
+  test.update();
+  EXPECT_EQ(test.grabbed.size(), 1u);
+  test.other_says.grabs = false;
+  test.update();
+  test.other_says.grabs = true;
+  test.update();
+  EXPECT_EQ(test.grabbed.size(), 2u);
+  EXPECT_EQ(test.releases, 1);
+}
+
+TEST(DeviceHand, HasNoRayBeyondTheWorld) {
+  TestHand test;
+  test.says.pose = DevicePose{{9e8, 0, 0}, {1, 0, 0, 0}};
+  test.update();
+  EXPECT_EQ(test.hand->rays().size(), 1u);
+  test.room.axes = {{{2, 0, 0}, {0, 0, 2}, {0, -2, 0}}};
+  test.update();
+  EXPECT_TRUE(test.hand->rays().empty());
+}
+
+/// What was taken from the middle stays where it is when the device gets a pose.
+TEST(DeviceHand, AFirstPoseYanksNothing) {
+  TestHand test;
+  test.says.grabs = true;
+  test.update();
+  ASSERT_EQ(test.grabbed.size(), 1u);
+  test.says.pose = DevicePose{{1, 2, 3}, {1, 0, 0, 0}};
+  test.update();
+  EXPECT_TRUE(test.pulled.empty());
+  test.says.pose->position = {1.5, 2, 3};
+  test.update();
+  ASSERT_EQ(test.pulled.size(), 1u);
+  expect_close(test.pulled[0], plus(test.grabbed[0].point, {0.25, 0, 0}), 1e-12);
 }
 
 /// A stick carries what is in the middle of the window, as the camera would go.

@@ -47,7 +47,9 @@ bool DeviceHand::is_simulating() const {
 }
 
 void DeviceHand::use_buttons(Held& hand, const DeviceState& state, const EyeRay& ray) {
-  const bool takes = state.grabs && !hand.grabs, probes = state.probes && !hand.probes;
+  const auto holds = [](const Held& any) { return any.holds; };
+  const bool takes = state.grabs && !hand.grabs && std::ranges::none_of(hands_, holds);
+  const bool probes = state.probes && !hand.probes;
   hand.grabs = state.grabs;
   hand.probes = state.probes;
   if (takes) {
@@ -55,7 +57,7 @@ void DeviceHand::use_buttons(Held& hand, const DeviceState& state, const EyeRay&
       actions_.grab(*found);
       hand.holds = true;
       hand.target = found->point;
-      if (state.pose) hand.local = place_of(*state.pose, room_).local_of(found->point);
+      hand.local.reset();
     }
   }
   if (hand.holds && !hand.grabs) {
@@ -74,9 +76,11 @@ bool DeviceHand::act(Held& hand, const DeviceSpan& span, Camera& camera, const E
   const DeviceState& state = span.state;
   if (state.pose) {
     const WandPlace wand = place_of(*state.pose, room_);
-    const bool held_before = hand.holds;
     use_buttons(hand, state, wand.ray());
-    if (hand.holds && held_before) carry(hand, wand.world_of(hand.local));
+    if (hand.holds && hand.local)
+      carry(hand, wand.world_of(*hand.local));
+    else if (hand.holds)
+      hand.local = wand.local_of(hand.target);
     Point3 end = hand.target;
     if (!hand.holds) {
       const EyeRay ray = wand.ray();
@@ -84,9 +88,10 @@ bool DeviceHand::act(Held& hand, const DeviceSpan& span, Camera& camera, const E
       const double reach = norm(minus(camera.eye, camera.target));
       end = found ? found->point : plus(ray.origin, times(reach, unit(ray.direction)));
     }
-    rays_.push_back({wand.origin, end});
+    if (is_in_world(wand.origin) && is_in_world(end)) rays_.push_back({wand.origin, end});
   } else {
     use_buttons(hand, state, middle);
+    hand.local.reset();
     if (hand.holds) {
       carry(hand, plus(hand.target, carried_way(camera, span)));
       return false;

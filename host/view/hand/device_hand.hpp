@@ -25,7 +25,8 @@ struct HandActions {
 };
 
 /// A button takes what is in the middle of the window, or what a tracked device points at. While
-/// the button is held, that goes as the device does: a tracked one carries it like a stick.
+/// the button is held, that goes as the device does: a tracked one carries it like a stick. One
+/// device holds something at a time.
 class DeviceHand {
  public:
   DeviceHand(std::vector<std::unique_ptr<InputDevice>> devices, HandActions actions);
@@ -43,7 +44,7 @@ class DeviceHand {
   bool is_simulating() const;
   /// Whether update() has changed rays or problems.
   bool has_news() const { return has_news_; }
-  /// Of tracked devices, as of update().
+  /// Of tracked devices, as of update(); those that are not in the world are left out.
   const std::vector<WandRay>& rays() const { return rays_; }
   /// A line for each device that says nothing, as of update().
   const std::string& problems() const { return problems_; }
@@ -54,7 +55,7 @@ class DeviceHand {
     bool grabs = false, probes = false;  ///< its buttons are down
     bool holds = false;                  ///< and something is held
     Point3 target{};                     ///< of what is held [world]
-    Point3 local{};                      ///< and where that is for a tracked device
+    std::optional<Point3> local = {};    ///< and where that is for a device with a pose
   };
   bool act(Held& hand, const DeviceSpan& span, Camera& camera, const EyeRay& middle);
   void use_buttons(Held& hand, const DeviceState& state, const EyeRay& ray);

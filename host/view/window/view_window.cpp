@@ -85,7 +85,10 @@ void ViewWindow::set_up_mouse() {
 void ViewWindow::set_up_devices() {
   HandActions actions;
   actions.meet = [this](const EyeRay& ray) { return hand_.meet(ray); };
-  actions.grab = [this](const Pick& point) { hand_.grab(point); };
+  actions.grab = [this](const Pick& point) {
+    style_->let_go();  // one thing is held at a time
+    hand_.grab(point);
+  };
   actions.pull = [this](const Point3& target) { hand_.pull(target); };
   actions.release = [this] { hand_.release(); };
   actions.probe = [this](const EyeRay& ray) {
@@ -368,6 +371,7 @@ bool ViewWindow::move_slice(int x, int y, int steps) {
 bool ViewWindow::grab(int x, int y) {
   const auto found = hand_.meet(pointer_.ray_at(x, y));
   if (!found) return false;
+  if (devices_) devices_->let_go();
   grab_depth_ = pointer_.depth_of(found->point);
   hand_.grab(*found);
   return true;
