@@ -24,14 +24,18 @@ using namespace view;
 /// Says what it is told.
 class ToldDevice : public InputDevice {
  public:
-  explicit ToldDevice(const DeviceState& says, const std::string& suffers)
-      : says_(says), suffers_(suffers) {}
-  std::optional<DeviceSpan> read() override { return DeviceSpan{says_, 0.1}; }
+  ToldDevice(const DeviceState& says, const std::string& suffers, const bool& is_gone)
+      : says_(says), suffers_(suffers), is_gone_(is_gone) {}
+  std::optional<DeviceSpan> read() override {
+    if (is_gone_) return std::nullopt;
+    return DeviceSpan{says_, 0.1};
+  }
   std::string problem() const override { return suffers_; }
 
  private:
   const DeviceState& says_;
   const std::string& suffers_;
+  const bool& is_gone_;
 };
 
 /// A hand with two devices, the other of which says nothing if not told to, and what they did. A
@@ -39,8 +43,8 @@ class ToldDevice : public InputDevice {
 struct TestHand {
   TestHand() {
     std::vector<std::unique_ptr<InputDevice>> devices;
-    devices.push_back(std::make_unique<ToldDevice>(says, suffers));
-    devices.push_back(std::make_unique<ToldDevice>(other_says, other_suffers));
+    devices.push_back(std::make_unique<ToldDevice>(says, suffers, is_gone));
+    devices.push_back(std::make_unique<ToldDevice>(other_says, other_suffers, is_other_gone));
     HandActions actions;
     actions.meet = [this](const EyeRay& ray) -> std::optional<Pick> {
       met.push_back(ray);
@@ -51,16 +55,23 @@ struct TestHand {
     actions.pull = [this](const Point3& target) { pulled.push_back(target); };
     actions.release = [this] { ++releases; };
     actions.probe = [this](const EyeRay& ray) { probed.push_back(ray); };
+    actions.place = [this](const Camera& of) {
+      RoomPlace placed = room;
+      placed.origin = plus(room.origin, minus(of.eye, first_eye));
+      return placed;
+    };
     hand = std::make_unique<DeviceHand>(std::move(devices), std::move(actions));
   }
-  bool update() { return hand->update(camera, {camera.eye, {0, 1, 0}}, room); }
+  bool update() { return hand->update(camera, {camera.eye, {0, 1, 0}}); }
 
   Camera camera{.eye = {0, -2, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}};
   // x, y and z of the room are x, z and -y of the world, where a meter of the room is 0.5 m.
+  // Its observer goes with the camera.
   RoomPlace room{{0, 1, 0}, {0, -2, 0}, {{{0.5, 0, 0}, {0, 0, 0.5}, {0, -0.5, 0}}}};
+  const Point3 first_eye = camera.eye;
   DeviceState says, other_says;
   std::string suffers, other_suffers;
-  bool is_empty = false;
+  bool is_empty = false, is_gone = false, is_other_gone = false;
   std::vector<EyeRay> met, probed;
   std::vector<Pick> grabbed;
   std::vector<Point3> pulled;
@@ -123,11 +134,13 @@ TEST(DeviceHand, WhatAWandHoldsMovesRigidlyWithIt) {
     test.update();
     const auto [from, to] = test.hand->rays()[0];
     EXPECT_EQ(to, test.pulled.back());
-    expect_close(from, test.room.world_of(pose.position), 1e-12);
+    const Point3 moved = minus(test.camera.eye, test.first_eye);  // in the same update
+    expect_close(from, plus(test.room.world_of(pose.position), moved), 1e-12);
     EXPECT_NEAR(norm(minus(to, from)), 2, 1e-12);
   }
   const std::size_t rays = test.met.size();
   test.says.grabs = false;
+  test.says.move = {};
   test.update();
   EXPECT_EQ(test.releases, 1);
   // The ray of a free wand is that along which it held.
@@ -168,6 +181,19 @@ TEST(DeviceHand, ALostWandLetsGoAndHasNoRay) {
   test.update();
   EXPECT_EQ(test.hand->problems(), "");
   EXPECT_EQ(test.hand->rays().size(), 1u);
+}
+
+TEST(DeviceHand, SaysThatADeviceIsGone) {
+  TestHand test;
+  test.says.grabs = true;
+  test.update();
+  test.suffers = "gamepad: is gone";
+  test.is_gone = true;
+  test.update();
+  EXPECT_EQ(test.releases, 1);
+  test.update();
+  EXPECT_EQ(test.hand->problems(), "gamepad: is gone");
+  EXPECT_EQ(test.grabbed.size(), 1u);
 }
 
 TEST(DeviceHand, AWandThatPointsAtNothingHoldsNothing) {
@@ -279,17 +305,17 @@ TEST(SceneHand, AWandPullsPushesAndProbes) {
   std::string probed;
   std::vector<std::unique_ptr<InputDevice>> devices;
   devices.push_back(std::make_unique<SimulatedDevice>(file));
-  DeviceHand hand(std::move(devices),
-                  {[&](const EyeRay& ray) { return reach.meet(ray); },
-                   [&](const Pick& point) { reach.grab(point); },
-                   [&](const Point3& target) { reach.pull(target); }, [&] { reach.release(); },
-                   [&](const EyeRay& ray) { probed = reach.probe(ray); }});
-  const RoomPlace world{{}, {}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  HandActions actions = reach.actions();
+  actions.probe = [&](const EyeRay& ray) { probed = reach.probe(ray); };
+  actions.place = [](const Camera&) {  // the room is the world
+    return RoomPlace{{}, {}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  };
+  DeviceHand hand(std::move(devices), std::move(actions));
   Camera camera{.eye = {0, -2, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}};
   simulation.begin();
   frame_at(simulation, 0);
   for (int line = 0; line < 6; ++line) {
-    hand.update(camera, {}, world);
+    hand.update(camera, {});
     simulation.give({.kind = OrderKind::step});
     frame_at(simulation, line + 1);
   }

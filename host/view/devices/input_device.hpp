@@ -51,7 +51,7 @@ class InputDevice {
   virtual std::optional<DeviceSpan> read() = 0;
   /// Whether it is no real one: it will be gone by itself.
   virtual bool is_simulated() const { return false; }
-  /// Why it says nothing now though it may again, or empty.
+  /// Why it says nothing now though it may again, or that it is gone, or empty.
   virtual std::string problem() const { return {}; }
 };
 

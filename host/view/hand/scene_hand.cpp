@@ -36,4 +36,11 @@ std::string SceneHand::probe(const EyeRay& ray) {
   return probe_text(scene_, simulation_.frames().front(), *found, ray.direction);
 }
 
+HandActions SceneHand::actions() {
+  return {.meet = [this](const EyeRay& ray) { return meet(ray); },
+          .grab = [this](const Pick& point) { grab(point); },
+          .pull = [this](const Point3& target) { pull(target); },
+          .release = [this] { release(); }};
+}
+
 }  // namespace tetwarp::view

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "host/view/hand/device_hand.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/pick.hpp"
 #include "host/view/view_scene.hpp"
@@ -28,6 +29,8 @@ class SceneHand {
   void release();
   /// What is where the ray meets something.
   std::string probe(const EyeRay& ray);
+  /// All but HandActions::probe and place. They use this.
+  HandActions actions();
 
  private:
   const ViewScene& scene_;

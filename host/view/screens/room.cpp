@@ -96,16 +96,13 @@ std::array<Point3, 2> eyes_of(const HeadPose& head, double eye_separation) {
   return {minus(head.position, half), plus(head.position, half)};
 }
 
-RoomPlace place_of_camera(const Room& room,
-                          const Point3& eye,
-                          const Point3& target,
-                          const Point3& up) {
-  const Point3 back = unit(minus(eye, target));
-  const Point3 right = unit(cross(up, back));
-  const double meter = norm(minus(eye, target)) / room.focus;
+RoomPlace place_of_camera(const Room& room, const Camera& camera) {
+  const Point3 arm = minus(camera.eye, camera.target), back = unit(arm);
+  const Point3 right = unit(cross(camera.up, back));
+  const double meter = norm(arm) / room.focus;
   if (!(meter > 0 && norm(right) > 0)) throw std::invalid_argument("the camera has no direction");
   return {room.observer,
-          eye,
+          camera.eye,
           {times(meter, right), times(meter, cross(back, right)), times(meter, back)}};
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/make.hpp>
 #include <tetwarp/volume.hpp>
 
 #include "host/view/hand/room_place.hpp"
@@ -71,9 +72,6 @@ std::array<Point3, 2> eyes_of(const HeadPose& head, double eye_separation);
 
 /// The room whose observer looks ahead as a camera does, with the camera's target at the focus.
 /// @throws std::invalid_argument  the camera's eye and target coincide, or `up` is along its view
-RoomPlace place_of_camera(const Room& room,
-                          const Point3& eye,
-                          const Point3& target,
-                          const Point3& up);
+RoomPlace place_of_camera(const Room& room, const Camera& camera);
 
 }  // namespace tetwarp::view

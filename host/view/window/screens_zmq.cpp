@@ -189,8 +189,7 @@ void MasterScreens::wait_for_screens() {
 }
 
 void MasterScreens::set_view(const MasterView& view) {
-  const RoomPlace place =
-      place_of_camera(impl_->room(), view.camera.eye, view.camera.target, view.camera.up);
+  const RoomPlace place = place_of_camera(impl_->room(), view.camera);
   impl_->server().set_view(
       place, {static_cast<std::uint8_t>(view.volumes), view.shows_contacts, view.level, view.width,
               view.slices, view.cut, view.curve, view.rays});
