@@ -283,6 +283,41 @@ TEST(DeviceHand, AStickTakesWhatIsInTheMiddle) {
   expect_close(test.camera.target, {0.1, 0, 0}, 1e-12);
 }
 
+/// What a ray meets follows ray, cut and frame, though the same question is answered once.
+TEST(SceneHand, MeetsWhatIsThereNow) {
+  ViewOptions options;
+  options.paused = true;
+  LiveSimulation simulation(live_scene(), options, {});
+  const ViewScene view = view_scene_of(simulation, options);
+  std::optional<Cut> cut;
+  SceneHand reach(view, simulation, [&] { return cut; });
+  simulation.begin();
+  frame_at(simulation, 0);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  EyeRay ray;
+  int met = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    if (trial % 3 == 0) ray = {{any(random) / 2, any(random) / 2, 0.5}, {any(random) / 9, 0, -1}};
+    if (trial % 4 == 0) cut = Cut{{0, 0, any(random)}, {0, 0, 1}};
+    if (trial % 8 == 0) cut.reset();
+    if (trial % 5 == 0) {
+      simulation.give({.kind = OrderKind::step});
+      frame_at(simulation, trial / 5 + 1);
+    }
+    const auto& points = simulation.frames().front().points;
+    const auto expected = pick(points, view.triangles, ray.origin, ray.direction, cut);
+    const auto found = reach.meet(ray);
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (!found) continue;
+    ++met;
+    EXPECT_EQ(found->point, expected->point);
+    EXPECT_EQ(found->body, expected->body);
+  }
+  EXPECT_GT(met, 20);
+  simulation.end();
+}
+
 /// A wand of a file pulls at the block of a simulation and carries a ball that pushes.
 TEST(SceneHand, AWandPullsPushesAndProbes) {
   const TemporaryFolder folder;

@@ -14,8 +14,13 @@ SceneHand::SceneHand(const ViewScene& scene,
     : scene_(scene), simulation_(simulation), cut_(std::move(cut)) {}
 
 std::optional<Pick> SceneHand::meet(const EyeRay& ray) {
-  return pick(simulation_.frames().front().points, scene_.triangles, ray.origin, ray.direction,
-              cut_());
+  const LiveFrame& frame = simulation_.frames().front();
+  const Question question{ray, frame.step, frame.tick, cut_()};
+  if (asked_ != question) {
+    met_ = pick(frame.points, scene_.triangles, ray.origin, ray.direction, question.cut);
+    asked_ = question;
+  }
+  return met_;
 }
 
 void SceneHand::grab(const Pick& point) {

@@ -1,6 +1,7 @@
 /// @file scene_hand.hpp
 /// SceneHand: what mouse and devices do to what a ray meets.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -36,6 +37,17 @@ class SceneHand {
   const ViewScene& scene_;
   LiveSimulation& simulation_;
   std::function<std::optional<Cut>()> cut_;
+
+  /// What decides what a ray meets, with step and tick of the frame.
+  struct Question {
+    EyeRay ray;
+    std::int64_t step = 0, tick = 0;
+    std::optional<Cut> cut;
+
+    bool operator==(const Question&) const = default;
+  };
+  std::optional<Question> asked_;  ///< newest: a wand that rests asks again and again
+  std::optional<Pick> met_;
 };
 
 }  // namespace tetwarp::view

@@ -90,9 +90,7 @@ HeadPose head_at(const std::vector<HeadPoint>& path, double time) {
 }
 
 std::array<Point3, 2> eyes_of(const HeadPose& head, double eye_separation) {
-  const auto& [w, x, y, z] = head.rotation;
-  const Point3 right{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
-  const Point3 half = times(eye_separation / 2, right);
+  const Point3 half = times(eye_separation / 2, columns_of(head.rotation)[0]);
   return {minus(head.position, half), plus(head.position, half)};
 }
 
