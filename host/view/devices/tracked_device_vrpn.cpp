@@ -1,6 +1,8 @@
 /// @file tracked_device_vrpn.cpp
 /// Messages of VRPN's trackers, buttons and analogs, which connect again by themselves.
+#include <arpa/inet.h>
 #include <netdb.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <vrpn_Analog.h>
 #include <vrpn_Button.h>
@@ -30,15 +32,15 @@ std::string with_address(const std::string& device) {
   wanted.ai_family = AF_INET;
   wanted.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  char address[NI_MAXHOST];
+  char address[INET_ADDRSTRLEN];
   const std::string host = device.substr(at, colon - at);
   if (getaddrinfo(host.c_str(), nullptr, &wanted, &found) != 0) {
     throw std::runtime_error("'" + device + "': there is no such host");
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owned(found, freeaddrinfo);
-  getnameinfo(found->ai_addr, found->ai_addrlen, address, sizeof address, nullptr, 0,
-              NI_NUMERICHOST);
-  return device.substr(0, at) + address + device.substr(colon);
+  const auto* const place = reinterpret_cast<const sockaddr_in*>(found->ai_addr);
+  return device.substr(0, at) + inet_ntop(AF_INET, &place->sin_addr, address, sizeof address) +
+         device.substr(colon);
 }
 
 class TrackedDevice : public InputDevice {
