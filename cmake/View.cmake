@@ -6,7 +6,7 @@ tetwarp_sources(tetwarp_view_parts host/view
   input_log.cpp live_simulation.cpp live_start.cpp live_volumes.cpp overlay_text.cpp pick.cpp
   ray_quality.cpp view_options.cpp view_scene.cpp view_tools.cpp volume_colors.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/devices
-  input_device.cpp simulated_device.cpp)
+  input_device.cpp number_line.cpp simulated_device.cpp tracked_names.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/hand
   device_hand.cpp room_place.cpp scene_hand.cpp)
 tetwarp_sources(tetwarp_view_parts host/view/look
@@ -98,9 +98,20 @@ add_library(tetwarp_view_devices STATIC)
 find_package(SDL2 QUIET)
 find_path(TETWARP_SPNAV_INCLUDE spnav.h)
 find_library(TETWARP_SPNAV_LIBRARY spnav)
-find_path(TETWARP_VRPN_INCLUDE vrpn_Tracker.h)
-find_library(TETWARP_VRPN_LIBRARY vrpn)
-find_library(TETWARP_QUAT_LIBRARY quat)  # a part of VRPN
+set(TETWARP_VRPN AUTO CACHE STRING "Trackers and wands of tetwarp view: AUTO, ON or OFF")
+set_property(CACHE TETWARP_VRPN PROPERTY STRINGS AUTO ON OFF)
+set(TETWARP_HAS_VRPN FALSE)
+if(NOT TETWARP_VRPN STREQUAL "OFF")
+  find_path(TETWARP_VRPN_INCLUDE vrpn_Tracker.h)
+  find_library(TETWARP_VRPN_LIBRARY vrpn HINTS ${TETWARP_VRPN_INCLUDE}/../lib)
+  find_library(TETWARP_QUAT_LIBRARY quat HINTS ${TETWARP_VRPN_INCLUDE}/../lib)  # a part of VRPN
+  if(TETWARP_VRPN_INCLUDE AND TETWARP_VRPN_LIBRARY AND TETWARP_QUAT_LIBRARY)
+    set(TETWARP_HAS_VRPN TRUE)
+  elseif(TETWARP_VRPN STREQUAL "ON")
+    message(FATAL_ERROR "TETWARP_VRPN=ON, but VRPN was not found; install it from github.com/vrpn/vrpn "
+      "and set CMAKE_PREFIX_PATH to where it is")
+  endif()
+endif()
 set(tetwarp_device_sources gamepad_nosdl.cpp space_mouse_nospnav.cpp tracked_device_novrpn.cpp)
 if(TARGET SDL2::SDL2)  # some packages have none
   list(TRANSFORM tetwarp_device_sources REPLACE "nosdl" "sdl")
@@ -111,9 +122,7 @@ if(TETWARP_SPNAV_INCLUDE AND TETWARP_SPNAV_LIBRARY)
   target_include_directories(tetwarp_view_devices SYSTEM PRIVATE ${TETWARP_SPNAV_INCLUDE})
   target_link_libraries(tetwarp_view_devices PRIVATE ${TETWARP_SPNAV_LIBRARY} ${X11_LIBRARIES})
 endif()
-set(TETWARP_HAS_VRPN FALSE)
-if(TETWARP_VRPN_INCLUDE AND TETWARP_VRPN_LIBRARY AND TETWARP_QUAT_LIBRARY)
-  set(TETWARP_HAS_VRPN TRUE)
+if(TETWARP_HAS_VRPN)
   list(TRANSFORM tetwarp_device_sources REPLACE "novrpn" "vrpn")
   add_library(tetwarp_vrpn INTERFACE)
   target_include_directories(tetwarp_vrpn SYSTEM INTERFACE ${TETWARP_VRPN_INCLUDE})

@@ -19,14 +19,14 @@ namespace {
 constexpr const char* replay_message = "a replay takes no input";
 
 /// [s]
-double seconds_of(clockid_t clock) {
-  timespec time{};
-  clock_gettime(clock, &time);
+double seconds_of(const timespec& time) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 double processor_seconds() {
-  return seconds_of(CLOCK_THREAD_CPUTIME_ID);
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return seconds_of(time);
 }
 }  // namespace
 
@@ -59,13 +59,19 @@ LiveSimulation::~LiveSimulation() {
 }
 
 void LiveSimulation::begin() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::thread([this] {
+    run();
+    ended_seconds_ = processor_seconds();
+  });
 }
 
 double LiveSimulation::thread_seconds() {
   clockid_t clock{};
-  pthread_getcpuclockid(thread_.native_handle(), &clock);
-  return seconds_of(clock);
+  timespec time{};
+  const bool runs = thread_.joinable() &&
+                    pthread_getcpuclockid(thread_.native_handle(), &clock) == 0 &&
+                    clock_gettime(clock, &time) == 0;
+  return runs ? seconds_of(time) : ended_seconds_.load();
 }
 
 void LiveSimulation::end() {

@@ -1,6 +1,7 @@
 /// @file live_simulation.hpp
 /// LiveSimulation: a simulation that steps in its own thread and takes orders between steps.
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -77,7 +78,7 @@ class LiveSimulation {
   void set_listener(Listener listener) { listener_ = std::move(listener); }
 
   void begin();
-  /// Processor time of the thread so far, without those that help it [s]; from begin() to end().
+  /// Processor time of the thread so far, without those that help it [s].
   double thread_seconds();
   /// Never waits. Of successive pulls only the last one acts.
   void give(const Order& order);
@@ -158,6 +159,7 @@ class LiveSimulation {
   std::vector<Clock::time_point> recent_;  ///< ends of the steps of the last second
 
   TripleBuffer<LiveFrame> frames_;
+  std::atomic<double> ended_seconds_ = 0;  ///< processor time of the thread, once it has ended
   std::thread thread_;
 };
 

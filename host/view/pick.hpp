@@ -14,6 +14,8 @@ namespace tetwarp::view {
 /// A half-line from an eye or a wand.
 struct EyeRay {
   Point3 origin{}, direction{};
+
+  bool operator==(const EyeRay&) const = default;
 };
 
 /// A point of a surface.

@@ -21,11 +21,11 @@ def matrix_of(value: Any, name: str) -> np.ndarray:
     if matrix.shape != (4, 4):
         raise ValueError(f"{name}: expected a Field of displacements, or 4 x 4 numbers, "
                          f"got shape {matrix.shape}")
-    if not np.isfinite(matrix).all():
-        raise ValueError(f"{name}: a number of the matrix is not finite")
     if matrix[3].tolist() != [0, 0, 0, 1]:
         raise ValueError(f"{name}: expected 0 0 0 1 as the last row, got "
                          + " ".join(f"{number:.15g}" for number in matrix[3]))
+    if not np.isfinite(matrix).all():
+        raise ValueError(f"{name}: a number of the matrix is not finite")
     return matrix
 
 

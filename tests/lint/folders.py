@@ -127,7 +127,7 @@ ALLOWED = {
     "host/view/look": ["io/tetwarp", "io/files", "host/base", *BASE],
     "host/view": ["host/view/devices", "host/view/look", "io/tetwarp", "io/files", "host/base", *BASE],
     "host/view/hand": ["host/view", "host/view/devices", "host/base", *BASE],
-    "host/view/screens": ["host/view", "host/view/hand", "host/view/look", "io/scene", "io/tetwarp", "host/base", *BASE],
+    "host/view/screens": ["host/view", "host/view/devices", "host/view/hand", "host/view/look", "io/scene", "io/tetwarp", "host/base", *BASE],
     "host/view/link": ["host/view/screens", "host/base", *BASE],
     "host/view/window": [
         "host/view", "host/view/devices", "host/view/hand", "host/view/look", "host/view/link", "host/view/screens", "io/tetwarp", "io/files", "host/base", *BASE],

@@ -65,7 +65,8 @@ def check_stereo(command, environment, folder):
     screens = []
     try:
         tracker = [command, "view", "--join", address, "--tracker"]
-        for text, status in (("1 2\n", 1), (f"0 1 0\n{HEAD[0]} {HEAD[1]} {HEAD[2]} 2 0 0 0\n", 0)):
+        good = f"0 1 0\n{HEAD[0]} {HEAD[1]} {HEAD[2]} 2 0 0 0\n"
+        for text, status in (("1 2\n", 1), ("0 1 0 -\n", 1), (good, 0)):
             done = subprocess.run(tracker, input=text, cwd=folder, timeout=SECONDS, text=True,
                                   capture_output=True)
             if done.returncode != status or ("line 1" in done.stderr) != (status == 1):

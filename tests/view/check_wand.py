@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 from check_keys import EYE, FACE, SCENE, SIZE, TARGET, TEXT, Window, differ
@@ -78,6 +79,17 @@ def check_record(text):
         fail(f"record: pulled by {way}")
 
 
+def wait_for_line(process, text):
+    """Ends the process where it does not say so in time."""
+    late = threading.Timer(SECONDS, process.kill)
+    late.start()
+    try:
+        if not any(text in line for line in process.stderr):
+            fail(f"'{text}': not said")
+    finally:
+        late.cancel()
+
+
 def check_head(command, program, environment, folder):
     """A screen shows a ball where the geometry of the room says for a head of sensor 1."""
     write_files(folder)
@@ -92,9 +104,7 @@ def check_head(command, program, environment, folder):
         with Server(program, port) as server:
             wait_for_window("tetwarp screen: front", environment)
             server.say(f"pose 1 {' '.join(map(str, head))} 0 0 0 1")
-            for line in master.stderr:
-                if "the head is tracked" in line:
-                    break
+            wait_for_line(master, "the head is tracked")
             end(master, "master")
     finally:
         master.kill()

@@ -196,8 +196,9 @@ def check_right_button(command, environment, folder, body):
 
 def check_colors(command, environment, folder):
     """The key k colors the block by its stress: it stands on its foot, so that the colors of
-    both ends of the scale are there."""
-    words = ["scene.json", "--fast", "--steps", "30", "--size", "320,240", "--screenshot",
+    both ends of the scale are there. It is still sinking, so that the scale ends at the stress of now,
+    whichever states were shown."""
+    words = ["scene.json", "--fast", "--steps", "10", "--size", "320,240", "--screenshot",
              "stress.png", "--colors", "stress"]
     done = view(command, words, environment, folder)
     if done.returncode != 0:

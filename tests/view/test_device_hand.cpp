@@ -24,21 +24,27 @@ using namespace view;
 /// Says what it is told.
 class ToldDevice : public InputDevice {
  public:
-  explicit ToldDevice(const DeviceState& says, const std::string& suffers)
-      : says_(says), suffers_(suffers) {}
-  std::optional<DeviceSpan> read() override { return DeviceSpan{says_, 0.1}; }
+  ToldDevice(const DeviceState& says, const std::string& suffers, const bool& is_gone)
+      : says_(says), suffers_(suffers), is_gone_(is_gone) {}
+  std::optional<DeviceSpan> read() override {
+    if (is_gone_) return std::nullopt;
+    return DeviceSpan{says_, 0.1};
+  }
   std::string problem() const override { return suffers_; }
 
  private:
   const DeviceState& says_;
   const std::string& suffers_;
+  const bool& is_gone_;
 };
 
-/// A hand with one device, and what it did. A body is everywhere, 2 m along each ray.
+/// A hand with two devices, the other of which says nothing if not told to, and what they did. A
+/// body is everywhere, 2 m along each ray.
 struct TestHand {
   TestHand() {
     std::vector<std::unique_ptr<InputDevice>> devices;
-    devices.push_back(std::make_unique<ToldDevice>(says, suffers));
+    devices.push_back(std::make_unique<ToldDevice>(says, suffers, is_gone));
+    devices.push_back(std::make_unique<ToldDevice>(other_says, other_suffers, is_other_gone));
     HandActions actions;
     actions.meet = [this](const EyeRay& ray) -> std::optional<Pick> {
       met.push_back(ray);
@@ -49,16 +55,23 @@ struct TestHand {
     actions.pull = [this](const Point3& target) { pulled.push_back(target); };
     actions.release = [this] { ++releases; };
     actions.probe = [this](const EyeRay& ray) { probed.push_back(ray); };
+    actions.place = [this](const Camera& of) {
+      RoomPlace placed = room;
+      placed.origin = plus(room.origin, minus(of.eye, first_eye));
+      return placed;
+    };
     hand = std::make_unique<DeviceHand>(std::move(devices), std::move(actions));
   }
-  bool update() { return hand->update(camera, {camera.eye, {0, 1, 0}}, room); }
+  bool update() { return hand->update(camera, {camera.eye, {0, 1, 0}}); }
 
   Camera camera{.eye = {0, -2, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}};
   // x, y and z of the room are x, z and -y of the world, where a meter of the room is 0.5 m.
+  // Its observer goes with the camera.
   RoomPlace room{{0, 1, 0}, {0, -2, 0}, {{{0.5, 0, 0}, {0, 0, 0.5}, {0, -0.5, 0}}}};
-  DeviceState says;
-  std::string suffers;
-  bool is_empty = false;
+  const Point3 first_eye = camera.eye;
+  DeviceState says, other_says;
+  std::string suffers, other_suffers;
+  bool is_empty = false, is_gone = false, is_other_gone = false;
   std::vector<EyeRay> met, probed;
   std::vector<Pick> grabbed;
   std::vector<Point3> pulled;
@@ -121,12 +134,13 @@ TEST(DeviceHand, WhatAWandHoldsMovesRigidlyWithIt) {
     test.update();
     const auto [from, to] = test.hand->rays()[0];
     EXPECT_EQ(to, test.pulled.back());
-    expect_close(from, test.room.world_of(pose.position), 1e-12);
+    const Point3 moved = minus(test.camera.eye, test.first_eye);  // in the same update
+    expect_close(from, plus(test.room.world_of(pose.position), moved), 1e-12);
     EXPECT_NEAR(norm(minus(to, from)), 2, 1e-12);
-    test.says.grabs = true;
   }
   const std::size_t rays = test.met.size();
   test.says.grabs = false;
+  test.says.move = {};
   test.update();
   EXPECT_EQ(test.releases, 1);
   // The ray of a free wand is that along which it held.
@@ -169,6 +183,19 @@ TEST(DeviceHand, ALostWandLetsGoAndHasNoRay) {
   EXPECT_EQ(test.hand->rays().size(), 1u);
 }
 
+TEST(DeviceHand, SaysThatADeviceIsGone) {
+  TestHand test;
+  test.says.grabs = true;
+  test.update();
+  test.suffers = "gamepad: is gone";
+  test.is_gone = true;
+  test.update();
+  EXPECT_EQ(test.releases, 1);
+  test.update();
+  EXPECT_EQ(test.hand->problems(), "gamepad: is gone");
+  EXPECT_EQ(test.grabbed.size(), 1u);
+}
+
 TEST(DeviceHand, AWandThatPointsAtNothingHoldsNothing) {
   TestHand test;
   test.is_empty = true;
@@ -181,6 +208,63 @@ TEST(DeviceHand, AWandThatPointsAtNothingHoldsNothing) {
   EXPECT_TRUE(test.pulled.empty());
   EXPECT_FALSE(test.hand->let_go());
   EXPECT_NEAR(norm(minus(test.hand->rays()[0][1], test.hand->rays()[0][0])), 2, 1e-12);
+}
+
+/// Another device takes nothing meanwhile, also not when the first one has let go while its button
+/// is still held.
+TEST(DeviceHand, OneDeviceHoldsAtATime) {
+  TestHand test;
+  test.says.pose = DevicePose{};
+  test.other_says.pose = DevicePose{{1, 1, 0}, {1, 0, 0, 0}};
+  test.says.grabs = true;
+  test.update();
+  test.other_says.grabs = true;
+  test.update();
+  test.other_says.pose->position = {2, 1, 0};
+  test.update();
+  test.other_says.grabs = false;
+  test.update();
+  EXPECT_EQ(test.grabbed.size(), 1u);
+  EXPECT_TRUE(test.pulled.empty());
+  EXPECT_EQ(test.releases, 0) << "what the first one holds stays held";
+  test.other_says.grabs = true;
+  test.update();
+  test.says.grabs = false;
+  test.update();
+  EXPECT_EQ(test.releases, 1);
+  test.update();
+  EXPECT_EQ(test.grabbed.size(), 1u);
+  test.other_says.grabs = false;
+  test.update();
+  test.other_says.grabs = true;
+  test.update();
+  EXPECT_EQ(test.grabbed.size(), 2u);
+  EXPECT_EQ(test.releases, 1);
+}
+
+TEST(DeviceHand, HasNoRayBeyondTheWorld) {
+  TestHand test;
+  test.says.pose = DevicePose{{9e8, 0, 0}, {1, 0, 0, 0}};
+  test.update();
+  EXPECT_EQ(test.hand->rays().size(), 1u);
+  test.room.axes = {{{2, 0, 0}, {0, 0, 2}, {0, -2, 0}}};
+  test.update();
+  EXPECT_TRUE(test.hand->rays().empty());
+}
+
+/// What was taken from the middle stays where it is when the device gets a pose.
+TEST(DeviceHand, AFirstPoseYanksNothing) {
+  TestHand test;
+  test.says.grabs = true;
+  test.update();
+  ASSERT_EQ(test.grabbed.size(), 1u);
+  test.says.pose = DevicePose{{1, 2, 3}, {1, 0, 0, 0}};
+  test.update();
+  EXPECT_TRUE(test.pulled.empty());
+  test.says.pose->position = {1.5, 2, 3};
+  test.update();
+  ASSERT_EQ(test.pulled.size(), 1u);
+  expect_close(test.pulled[0], plus(test.grabbed[0].point, {0.25, 0, 0}), 1e-12);
 }
 
 /// A stick carries what is in the middle of the window, as the camera would go.
@@ -197,6 +281,41 @@ TEST(DeviceHand, AStickTakesWhatIsInTheMiddle) {
   EXPECT_TRUE(test.hand->let_go());
   EXPECT_TRUE(test.update()) << "now the camera moves";
   expect_close(test.camera.target, {0.1, 0, 0}, 1e-12);
+}
+
+/// What a ray meets follows ray, cut and frame, though the same question is answered once.
+TEST(SceneHand, MeetsWhatIsThereNow) {
+  ViewOptions options;
+  options.paused = true;
+  LiveSimulation simulation(live_scene(), options, {});
+  const ViewScene view = view_scene_of(simulation, options);
+  std::optional<Cut> cut;
+  SceneHand reach(view, simulation, [&] { return cut; });
+  simulation.begin();
+  frame_at(simulation, 0);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  EyeRay ray;
+  int met = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    if (trial % 3 == 0) ray = {{any(random) / 2, any(random) / 2, 0.5}, {any(random) / 9, 0, -1}};
+    if (trial % 4 == 0) cut = Cut{{0, 0, any(random)}, {0, 0, 1}};
+    if (trial % 8 == 0) cut.reset();
+    if (trial % 5 == 0) {
+      simulation.give({.kind = OrderKind::step});
+      frame_at(simulation, trial / 5 + 1);
+    }
+    const auto& points = simulation.frames().front().points;
+    const auto expected = pick(points, view.triangles, ray.origin, ray.direction, cut);
+    const auto found = reach.meet(ray);
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (!found) continue;
+    ++met;
+    EXPECT_EQ(found->point, expected->point);
+    EXPECT_EQ(found->body, expected->body);
+  }
+  EXPECT_GT(met, 20);
+  simulation.end();
 }
 
 /// A wand of a file pulls at the block of a simulation and carries a ball that pushes.
@@ -221,17 +340,17 @@ TEST(SceneHand, AWandPullsPushesAndProbes) {
   std::string probed;
   std::vector<std::unique_ptr<InputDevice>> devices;
   devices.push_back(std::make_unique<SimulatedDevice>(file));
-  DeviceHand hand(std::move(devices),
-                  {[&](const EyeRay& ray) { return reach.meet(ray); },
-                   [&](const Pick& point) { reach.grab(point); },
-                   [&](const Point3& target) { reach.pull(target); }, [&] { reach.release(); },
-                   [&](const EyeRay& ray) { probed = reach.probe(ray); }});
-  const RoomPlace world{{}, {}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  HandActions actions = reach.actions();
+  actions.probe = [&](const EyeRay& ray) { probed = reach.probe(ray); };
+  actions.place = [](const Camera&) {  // the room is the world
+    return RoomPlace{{}, {}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  };
+  DeviceHand hand(std::move(devices), std::move(actions));
   Camera camera{.eye = {0, -2, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}};
   simulation.begin();
   frame_at(simulation, 0);
   for (int line = 0; line < 6; ++line) {
-    hand.update(camera, {}, world);
+    hand.update(camera, {});
     simulation.give({.kind = OrderKind::step});
     frame_at(simulation, line + 1);
   }

@@ -70,8 +70,10 @@ TEST(Gamepad, SticksAndButtonsMoveTurnAndGrab) {
   pad.press(SDL_CONTROLLER_BUTTON_B, true);
   EXPECT_FALSE(device->read().value().state.grabs);
   EXPECT_TRUE(device->read().value().state.probes);
+  EXPECT_EQ(device->problem(), "");
   pad.detach();
-  EXPECT_FALSE(device->read()) << "it is gone";
+  EXPECT_FALSE(device->read());
+  EXPECT_EQ(device->problem(), "gamepad: is gone");
 }
 
 TEST(Gamepad, ThatIsMissingIsNamed) {

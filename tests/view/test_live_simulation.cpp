@@ -28,6 +28,7 @@ TEST(LiveSimulation, StepsOnOrderAndPullsWhatIsGrabbed) {
   ViewOptions options;
   options.paused = true;
   LiveSimulation simulation(live_scene(), options, {});
+  EXPECT_EQ(simulation.thread_seconds(), 0);
   simulation.begin();
   const LiveFrame first = frame_at(simulation, 0);
   EXPECT_TRUE(first.is_paused);
@@ -50,7 +51,10 @@ TEST(LiveSimulation, StepsOnOrderAndPullsWhatIsGrabbed) {
   const LiveFrame again = frame_at(simulation, 3);
   EXPECT_EQ(again.step, 1);
   EXPECT_FALSE(again.grab);
+  const double spent = simulation.thread_seconds();
+  EXPECT_GT(spent, 0);
   simulation.end();
+  EXPECT_GE(simulation.thread_seconds(), spent);
   EXPECT_EQ(simulation.log().events.size(), 4u);
 }
 

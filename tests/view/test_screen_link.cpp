@@ -192,6 +192,18 @@ TEST(ScreenLink, LosesNoMessageOnceThereIsAMaster) {
   EXPECT_FALSE(ScreenLink("tcp://127.0.0.1:1", {}).wait_for_master(0.1));
 }
 
+TEST(ScreenServer, SaysThatATrackerHasNeverSpoken) {
+  Room room = test_room();
+  room.tracker = "Head@host";
+  Master master(room);
+  EXPECT_FALSE(master.server.counts().has_lost_head) << "it may still come";
+  EXPECT_TRUE(master.comes_to([](const ScreenCounts& c) { return c.has_lost_head; }));
+  ScreenLink tracker(master.server.address(), {});
+  ASSERT_TRUE(tracker.wait_for_master(most_seconds));
+  tracker.send(HeadMessage{});
+  EXPECT_TRUE(master.comes_to([](const ScreenCounts& c) { return !c.has_lost_head; }));
+}
+
 TEST(ScreenServer, CountsMalformedMessagesAndGoesOn) {
   Master master;
   zmq::context_t context;

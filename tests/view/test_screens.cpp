@@ -135,7 +135,7 @@ TEST(OffAxis, DepthGoesFromNearestToFarthest) {
 TEST(Room, ShowsTheCamerasTargetAtTheFocus) {
   const Room room = shipped("cube");
   const Point3 eye{0.3, -2, 1}, target{0.1, 0.4, 0.5};
-  const RoomPlace place = place_of_camera(room, eye, target, {0, 0, 1});
+  const RoomPlace place = place_of_camera(room, {eye, target, {0, 0, 1}});
   EXPECT_EQ(place.world_of(room.observer), eye);
   const Point3 ahead = place.world_of(plus(room.observer, {0, 0, -room.focus}));
   for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(ahead[d], target[d], 1e-12);
@@ -146,8 +146,8 @@ TEST(Room, ShowsTheCamerasTargetAtTheFocus) {
   }
   EXPECT_GT(dot(cross(place.axes[0], place.axes[1]), place.axes[2]), 0);
   EXPECT_GT(place.axes[1][2], 0);  // up
-  EXPECT_THROW(place_of_camera(room, eye, eye, {0, 0, 1}), std::invalid_argument);
-  EXPECT_THROW(place_of_camera(room, {0, 0, 1}, {0, 0, 0}, {0, 0, 1}), std::invalid_argument);
+  EXPECT_THROW(place_of_camera(room, {eye, eye, {0, 0, 1}}), std::invalid_argument);
+  EXPECT_THROW(place_of_camera(room, {{0, 0, 1}, {0, 0, 0}, {0, 0, 1}}), std::invalid_argument);
 }
 
 TEST(Room, EyesTurnWithTheHead) {
@@ -184,6 +184,10 @@ TEST(RoomFile, NamesWhatIsWrong) {
       R"("lower_left": [-1, -1, -1], "lower_right": [1, -1, -1], "upper_right": [1, 1, -1])";
   EXPECT_EQ(parse_room(head + R"({"name": "a", )" + corners + "}]}", "r").focus, 1);
   refuses("{}", "tetwarp_room");
+  refuses(
+      R"({"tetwarp_room": 1, "tracker": "Head@x-vrsh://host/program", "screens": [{"name": "a", )" +
+          corners + "}]}",
+      "tracker 'Head@x-vrsh://host/program': expected");
   refuses(head + "]}", "screens: there are none");
   refuses(head + "{" + corners + "}]}", "name");
   refuses(head + R"({"name": "a", "lower_left": [0, 0], )" + corners + "}]}", "lower_left");

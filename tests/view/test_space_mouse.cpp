@@ -90,6 +90,7 @@ TEST(SpaceMouse, CapAndButtonsMoveTurnGrabAndProbe) {
   EXPECT_EQ(mouse->read().value().state.move, Point3{});
   daemon.hang_up();
   EXPECT_FALSE(mouse->read()) << "it is gone";
+  EXPECT_EQ(mouse->problem(), "spacemouse: the daemon spacenavd has ended");
 }
 
 TEST(SpaceMouse, WithoutADaemonIsNamed) {

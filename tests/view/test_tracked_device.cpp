@@ -39,7 +39,7 @@ int unused_port() {
 class TrackingServer {
  public:
   explicit TrackingServer(int port)
-      : lines_(popen((TETWARP_TRACKING_SERVER " " + std::to_string(port)).c_str(), "w")) {}
+      : lines_(popen(("'" TETWARP_TRACKING_SERVER "' " + std::to_string(port)).c_str(), "w")) {}
   TrackingServer(const TrackingServer&) = delete;
   TrackingServer& operator=(const TrackingServer&) = delete;
   ~TrackingServer() { pclose(lines_); }
@@ -157,20 +157,67 @@ TEST(TrackedDevice, HasButtonsOfAnotherServer) {
   EXPECT_FALSE(device->read()->state.probes);
 }
 
-TEST(TrackedDevice, RefusesNamesThatAreNone) {
-  for (const std::string name :
-       {"Wand", "@host", "Wand@", "Wand@localhost#x", "Wand@localhost#", "Wand@localhost#-1",
-        "Wand@localhost+Buttons", "Wand@localhost+"}) {
-    try {
-      open_tracked_device(name);
-      ADD_FAILURE() << name;
-    } catch (const std::runtime_error& error) {
-      EXPECT_EQ(std::string(error.what()),
-                "'" + name +
-                    "': no tracker; expected "
-                    "TRACKER@HOST[:PORT][#SENSOR][+BUTTONS@HOST[:PORT]]");
-    }
+/// A wand that is nowhere holds nothing: before its first pose, and when its tracker has ended,
+/// though the buttons have a server that goes on.
+TEST(TrackedDevice, HasNoButtonsWithoutAPose) {
+  const int poses = unused_port(), buttons = unused_port();
+  TrackingServer keys(buttons);
+  const auto device = open_tracked_device(at_port("Wand", poses) + "+" + at_port("Wand", buttons));
+  keys.say("button 0 1");
+  keys.say("button 1 1");
+  keys.say("axes 1 0 0 0");  // comes after the buttons
+  ASSERT_TRUE(comes_to(*device, [](const DeviceState& state) {
+    EXPECT_FALSE(state.grabs || state.probes);
+    return state.move[0] == 1;
+  }));
+  {
+    TrackingServer tracker(poses);
+    tracker.say_pose(0, {{1, 2, 3}, {1, 0, 0, 0}});
+    EXPECT_TRUE(comes_to(*device, [](const DeviceState& state) {
+      EXPECT_EQ(state.grabs, state.pose.has_value());
+      return state.pose && state.probes;
+    }));
   }
+  EXPECT_TRUE(comes_to(*device, [](const DeviceState& state) {
+    EXPECT_EQ(state.grabs, state.pose.has_value());
+    return !state.pose;
+  }));
+  EXPECT_EQ(device->read()->state.move[0], 1) << "the axes are there";
+}
+
+/// A server that answers no more may be anywhere with the wand.
+TEST(TrackedDevice, LetsGoWhenItsTrackerIsSilent) {
+  const int port = unused_port();
+  TrackingServer server(port);
+  const auto device = open_tracked_device(at_port("Wand", port));
+  server.say_pose(0, {{1, 2, 3}, {1, 0, 0, 0}});
+  server.say("button 0 1");
+  ASSERT_TRUE(comes_to(*device, [](const DeviceState& state) { return state.grabs; }));
+  server.say("hang 1");
+  EXPECT_TRUE(comes_to(*device, [](const DeviceState& state) { return !state.grabs; }));
+  const DeviceSpan span = device->read().value();
+  EXPECT_TRUE(has_position(span.state, {1, 2, 3}));
+  EXPECT_GT(span.pose_age, 1);
+  EXPECT_NE(device->problem().find("no pose of sensor 0"), std::string::npos);
+}
+
+TEST(TrackedDevice, IgnoresPosesBeyondTheWorld) {
+  const int port = unused_port();
+  TrackingServer server(port);
+  const auto device = open_tracked_device(at_port("Wand", port));
+  server.say_pose(0, {{1, 2, 3}, {1, 0, 0, 0}});
+  ASSERT_TRUE(comes_to(*device, [](const DeviceState& state) { return state.pose.has_value(); }));
+  server.say_pose(0, {{1e300, 2, 3}, {1, 0, 0, 0}});
+  server.say("button 0 1");
+  EXPECT_TRUE(comes_to(*device, [](const DeviceState& state) {
+    EXPECT_TRUE(has_position(state, {1, 2, 3}));
+    return state.grabs;
+  }));
+}
+
+TEST(TrackedDevice, RefusesAHostThatIsNone) {
+  EXPECT_THROW(open_tracked_device("Wand@nowhere.invalid"), std::runtime_error);
+  EXPECT_THROW(open_tracked_device("Wand@file:123"), std::runtime_error);
 }
 
 }  // namespace

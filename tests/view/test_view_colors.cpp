@@ -90,6 +90,9 @@ TEST(ValueRange, GrowsWithItsQuantity) {
   range.include(SurfaceQuantity::gap, {{NAN}, {-1e-3F, 2e-3F}});
   EXPECT_NEAR(range.low(), -1e-3, 1e-9);
   EXPECT_NEAR(range.high(), 2e-3, 1e-9);
+  range.include(SurfaceQuantity::gap, {{INFINITY, -INFINITY, 3e-3F}});
+  EXPECT_NEAR(range.low(), -1e-3, 1e-9);
+  EXPECT_NEAR(range.high(), 3e-3, 1e-9);
   range.include(SurfaceQuantity::adhesion, {});
   EXPECT_EQ(range.low(), 0);
   EXPECT_EQ(range.high(), 1);

@@ -5,11 +5,14 @@
 #include <fstream>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <tetwarp/error.hpp>
 
 #include "host/base/point3.hpp"
+#include "host/view/devices/number_line.hpp"
 #include "host/view/devices/simulated_device.hpp"
+#include "host/view/devices/tracked_names.hpp"
 #include "tests/support/run_command.hpp"
 
 namespace tetwarp::test {
@@ -102,7 +105,9 @@ TEST(SimulatedDevice, NamesTheLineThatIsWrong) {
   for (const std::string line :
        {"", "0.1 0 0 0 0 0 0", "0.1 0 0 0 0 0 0 0 0", "0.1 2 0 0 0 0 0 0", "-1 0 0 0 0 0 0 0",
         "0.1 0 0 0 0 0 0 3", "0.1 0 0 a 0 0 0 0", "0.1 0 0 0 0 0 0 0 1 2 3 1 0 0 0",
-        "0.1 0 0 0 0 0 0 0 1 2 3 1 0 0 0 2", "0.1 0 0 0 0 0 0 0 1 2 3 0 0 0 0 1"}) {
+        "0.1 0 0 0 0 0 0 0 1 2 3 1 0 0 0 2", "0.1 0 0 0 0 0 0 0 1 2 3 0 0 0 0 1",
+        "0.1 0 0 0 0 0 0 0 -", "0.1 0 0 0 0 0 0 0 1 2 3 1 0 0 0 1e999",
+        "0.1 0 0 0 0 0 0 0 1 2 1e300 1 0 0 0 1"}) {
     std::ofstream(path) << "0.1 0 0 0 0 0 0 0\n" << line << "\n";
     try {
       const SimulatedDevice device(path);
@@ -112,6 +117,60 @@ TEST(SimulatedDevice, NamesTheLineThatIsWrong) {
     }
   }
   EXPECT_THROW(SimulatedDevice(folder / "nowhere"), IoError);
+}
+
+TEST(NumberLine, HasFiniteNumbersAlone) {
+  EXPECT_EQ(numbers_of(" 1 -2e3\t+.5 0x"), std::nullopt);
+  EXPECT_EQ(numbers_of(" 1 -2e3\t+.5 \r"), (std::vector<double>{1, -2000, 0.5}));
+  EXPECT_EQ(numbers_of(""), std::vector<double>{});
+  for (const std::string word :
+       {"-", "+", "+-1", "1e", "1e+", "1e999", "-1e999", "nan", "inf", "1,5", "x", "1x"}) {
+    EXPECT_EQ(numbers_of("1 2 " + word), std::nullopt) << word;
+    EXPECT_EQ(numbers_of(word + " 1 2"), std::nullopt) << word;
+  }
+}
+
+TEST(TrackedNames, AreTakenApart) {
+  const TrackedNames plain = tracked_names("Wand@host");
+  EXPECT_EQ(plain.tracker + " " + plain.buttons, "Wand@host Wand@host");
+  EXPECT_EQ(plain.sensor, 0);
+  const TrackedNames whole = tracked_names("A b@10.0.0.2:65535#9999+Keys@my-pc.lan:1");
+  EXPECT_EQ(whole.tracker + " " + whole.buttons, "A b@10.0.0.2:65535 Keys@my-pc.lan:1");
+  EXPECT_EQ(whole.sensor, 9999);
+}
+
+/// Addresses that start programs, read files or listen are refused, also as a host of buttons.
+TEST(TrackedNames, AreNoOtherAddresses) {
+  for (const std::string name : {"Wand",
+                                 "@host",
+                                 "Wand@",
+                                 "Wand@@host",
+                                 "Wand@x-vrsh://host/program,word",
+                                 "Wand@x-vrsh:host",
+                                 "Wand@file:/etc/passwd",
+                                 "Wand@file://name",
+                                 "Wand@tcp://host",
+                                 "Wand@host/program",
+                                 "Wand@host name",
+                                 "Wand@host;ls",
+                                 "Wand@host\n",
+                                 "Wand@:3883",
+                                 "Wand@host:",
+                                 "Wand@host:0",
+                                 "Wand@host:65536",
+                                 "Wand@host:-1",
+                                 "Wand@host:38x3",
+                                 "Wand@host:+1",
+                                 "Wand@host:1:2",
+                                 "Wand@host:99999999999",
+                                 "x-vrsh:Wand@host"}) {
+    EXPECT_THROW(tracked_names(name), std::invalid_argument) << name;
+    EXPECT_THROW(tracked_names("Wand@host+" + name), std::invalid_argument) << name;
+  }
+  for (const std::string name : {"Wand@host#x", "Wand@host#", "Wand@host#-1", "Wand@host#10000",
+                                 "Wand@host#0#1", "Wand@host+", "Wand@host+A@b#1", ""}) {
+    EXPECT_THROW(tracked_names(name), std::invalid_argument) << name;
+  }
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 ///     tracking_server PORT    at the loopback interface, until the standard input ends
 ///
 /// Lines of the standard input: pose SENSOR x y z qx qy qz qw, button NUMBER 0 or 1, axes and four
-/// numbers. Poses are repeated as trackers do.
+/// numbers, hang 1. Poses are repeated as trackers do, until it hangs.
 #include <poll.h>
 #include <unistd.h>
 #include <vrpn_Analog.h>
@@ -54,10 +54,13 @@ class Server {
       buttons_.set_button(number, state);
     } else if (what == "axes") {
       for (int axis = 0; axis < 4; ++axis) words >> axes_.channels()[axis];
+    } else if (what == "hang") {
+      words >> is_hanging_;
     }
   }
 
   void serve() {
+    if (is_hanging_) return;
     timeval now{};
     vrpn_gettimeofday(&now, nullptr);
     for (const auto& [sensor, pose] : poses_) {
@@ -76,6 +79,7 @@ class Server {
   vrpn_Button_Server buttons_;
   vrpn_Analog_Server axes_;
   std::map<int, Pose> poses_;
+  bool is_hanging_ = false;
 };
 }  // namespace
 

@@ -49,6 +49,9 @@ class Gamepad : public InputDevice {
     since_ = {};
     return span;
   }
+  std::string problem() const override {
+    return SDL_GameControllerGetAttached(pad_) == SDL_TRUE ? "" : "gamepad: is gone";
+  }
 
  private:
   double button(SDL_GameControllerButton of) const { return SDL_GameControllerGetButton(pad_, of); }

@@ -32,6 +32,10 @@ Point3 turned(const Point3& x, const Point3& axis, double angle) {
 }
 }  // namespace
 
+bool is_in_world(const Point3& x) {
+  return std::ranges::all_of(x, [](double part) { return std::abs(part) < largest_world; });
+}
+
 double beyond_rest(double value) {
   const double size = std::max(std::abs(value) - rest_share, 0.0) / (1 - rest_share);
   return std::copysign(std::min(size, 1.0), value);
@@ -42,6 +46,13 @@ std::optional<std::array<double, 4>> unit_rotation(const std::array<double, 4>& 
   const double size = std::sqrt(w * w + x * x + y * y + z * z);
   if (!(size > 0 && std::isfinite(size))) return std::nullopt;
   return std::array{w / size, x / size, y / size, z / size};
+}
+
+std::optional<DevicePose> device_pose(const Point3& position,
+                                      const std::array<double, 4>& rotation) {
+  const auto unit = unit_rotation(rotation);
+  if (!unit || !is_in_world(position)) return std::nullopt;
+  return DevicePose{position, *unit};
 }
 
 Point3 carried_way(const Camera& camera, const DeviceSpan& by) {

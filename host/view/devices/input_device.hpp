@@ -10,6 +10,11 @@
 
 namespace tetwarp::view {
 
+inline constexpr double largest_world = 1e9;  ///< a coordinate [m]
+
+/// Whether all coordinates are below largest_world.
+bool is_in_world(const Point3& x);
+
 /// Where a tracked device is, in coordinates of the room: x to the right, y up, z back.
 struct DevicePose {
   Point3 position{};                           ///< [m]
@@ -32,7 +37,8 @@ struct DeviceState {
 /// What a device says for so long.
 struct DeviceSpan {
   DeviceState state;
-  double seconds = 0;  ///< since the last call
+  double seconds = 0;   ///< since the last call
+  double pose_age = 0;  ///< since a tracked device said its pose [s]
 };
 
 /// DeviceSpan::seconds of a real device, which is asked less often where pictures take long [s].
@@ -45,7 +51,7 @@ class InputDevice {
   virtual std::optional<DeviceSpan> read() = 0;
   /// Whether it is no real one: it will be gone by itself.
   virtual bool is_simulated() const { return false; }
-  /// Why it says nothing now though it may again, or empty.
+  /// Why it says nothing now though it may again, or that it is gone, or empty.
   virtual std::string problem() const { return {}; }
 };
 
@@ -54,6 +60,11 @@ double beyond_rest(double value);
 
 /// A quaternion w x y z of length 1; nothing: it has none.
 std::optional<std::array<double, 4>> unit_rotation(const std::array<double, 4>& rotation);
+
+/// @param rotation  a quaternion w x y z of any length
+/// @returns nothing where the position is not in the world or the quaternion has no length
+std::optional<DevicePose> device_pose(const Point3& position,
+                                      const std::array<double, 4>& rotation);
 
 /// The camera after a device moved it: it goes along with the target by half a distance of both a
 /// second at most, and turns about the target by a quarter turn a second at most.

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <tetwarp/error.hpp>
+
+#include "host/view/devices/number_line.hpp"
 
 namespace tetwarp::view {
 namespace {
@@ -16,25 +17,20 @@ bool is_share(double value) {
 
 constexpr std::size_t stick_numbers = 8, wand_numbers = 16;
 
-std::optional<DevicePose> pose_of(const std::vector<double>& numbers) {
-  const auto rotation = unit_rotation({numbers[11], numbers[12], numbers[13], numbers[14]});
-  if (!rotation) return std::nullopt;
-  return DevicePose{{numbers[8], numbers[9], numbers[10]}, *rotation};
-}
-
 bool read_span(const std::string& line, DeviceSpan& span) {
-  std::istringstream words(line);
-  std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
+  const auto found = numbers_of(line);
+  if (!found) return false;
+  const std::vector<double>& numbers = *found;
   const bool is_wand = numbers.size() == wand_numbers;
-  if (!words.eof() || (numbers.size() != stick_numbers && !is_wand)) return false;
+  if (numbers.size() != stick_numbers && !is_wand) return false;
   const auto is_flag = [&](std::size_t n) { return numbers[n] == 0 || numbers[n] == 1; };
   span.seconds = numbers[0];
   std::copy_n(numbers.begin() + 1, 3, span.state.move.begin());
   std::copy_n(numbers.begin() + 4, 3, span.state.turn.begin());
   span.state.grabs = numbers[7] == 1;
   if (is_wand) {
-    span.state.pose = pose_of(numbers);
+    span.state.pose = device_pose({numbers[8], numbers[9], numbers[10]},
+                                  {numbers[11], numbers[12], numbers[13], numbers[14]});
     span.state.probes = numbers[15] == 1;
     if (!span.state.pose || !is_flag(15)) return false;
   }

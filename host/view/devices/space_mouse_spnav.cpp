@@ -30,11 +30,15 @@ class SpaceMouse : public InputDevice {
     while (spnav_poll_event(&event) != 0) take(event);
     char next = 0;
     const auto waiting = recv(spnav_fd(), &next, 1, MSG_PEEK | MSG_DONTWAIT);
-    if (waiting == 0) return std::nullopt;  // the daemon has ended
+    has_ended_ = waiting == 0;
+    if (has_ended_) return std::nullopt;
     if (said_.seconds() > rest_seconds) state_.move = state_.turn = {0, 0, 0};
     const DeviceSpan span{state_, std::min(since_.seconds(), most_span)};
     since_ = {};
     return span;
+  }
+  std::string problem() const override {
+    return has_ended_ ? "spacemouse: the daemon spacenavd has ended" : "";
   }
 
  private:
@@ -53,6 +57,7 @@ class SpaceMouse : public InputDevice {
   }
 
   DeviceState state_;
+  bool has_ended_ = false;
   Stopwatch since_, said_;
 };
 }  // namespace

@@ -1,65 +1,63 @@
 /// @file tracked_device_vrpn.cpp
 /// Messages of VRPN's trackers, buttons and analogs, which connect again by themselves.
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <vrpn_Analog.h>
 #include <vrpn_Button.h>
 #include <vrpn_Tracker.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
-#include "host/base/point3.hpp"
 #include "host/base/stopwatch.hpp"
 #include "host/view/devices/tracked_device.hpp"
+#include "host/view/devices/tracked_names.hpp"
 
 namespace tetwarp::view {
 namespace {
 constexpr double silent_seconds = 3;
 
-struct TrackedNames {
-  std::string tracker, buttons;
-  vrpn_int32 sensor = 0;
-};
-
-TrackedNames names_of(const std::string& name) {
-  TrackedNames names;
-  const std::size_t plus_sign = std::min(name.find('+'), name.size());
-  const std::string first = name.substr(0, plus_sign);
-  const std::size_t hash = std::min(first.find('#'), first.size());
-  names.tracker = first.substr(0, hash);
-  names.buttons = plus_sign < name.size() ? name.substr(plus_sign + 1) : names.tracker;
-  bool is_good = true;
-  if (hash < first.size()) {
-    const char* const end = first.data() + first.size();
-    const auto [past, error] = std::from_chars(first.data() + hash + 1, end, names.sensor);
-    is_good = error == std::errc() && past == end && names.sensor >= 0;
+/// VRPN would look its host up again and again, and wait for that, while no server answers.
+/// @param device  NAME@HOST or NAME@HOST:PORT
+/// @returns the same with the address of the host
+std::string with_address(const std::string& device) {
+  const std::size_t at = device.find('@') + 1;
+  const std::size_t colon = std::min(device.find(':', at), device.size());
+  addrinfo wanted{};
+  wanted.ai_family = AF_INET;
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  char address[INET_ADDRSTRLEN];
+  const std::string host = device.substr(at, colon - at);
+  if (getaddrinfo(host.c_str(), nullptr, &wanted, &found) != 0) {
+    throw std::runtime_error("'" + device + "': there is no such host");
   }
-  for (const std::string& device : {names.tracker, names.buttons}) {
-    const std::size_t sign = device.find('@');
-    is_good = is_good && sign != std::string::npos && sign > 0 && sign + 1 < device.size();
-  }
-  if (!is_good) {
-    throw std::runtime_error("'" + name +
-                             "': no tracker; expected "
-                             "TRACKER@HOST[:PORT][#SENSOR][+BUTTONS@HOST[:PORT]]");
-  }
-  return names;
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owned(found, freeaddrinfo);
+  const auto* const place = reinterpret_cast<const sockaddr_in*>(found->ai_addr);
+  return device.substr(0, at) + inet_ntop(AF_INET, &place->sin_addr, address, sizeof address) +
+         device.substr(colon);
 }
 
 class TrackedDevice : public InputDevice {
  public:
   explicit TrackedDevice(TrackedNames names)
       : names_(std::move(names)),
-        tracker_(names_.tracker.c_str()),
-        buttons_(names_.buttons.c_str()),
-        axes_(names_.buttons.c_str()) {
+        tracker_(with_address(names_.tracker).c_str()),
+        buttons_(with_address(names_.buttons).c_str()),
+        axes_(with_address(names_.buttons).c_str()) {
     check(tracker_, names_.tracker);
     check(buttons_, names_.buttons);
     // The window says so.
     tracker_.shutup = buttons_.shutup = axes_.shutup = true;
-    tracker_.register_change_handler(this, take_pose, names_.sensor);
+    if (tracker_.register_change_handler(this, take_pose, names_.sensor) != 0) {
+      throw std::runtime_error("'" + names_.tracker + "': VRPN has no sensor " +
+                               std::to_string(names_.sensor));
+    }
     buttons_.register_change_handler(this, take_button);
     buttons_.register_states_handler(this, take_buttons);
     axes_.register_change_handler(this, take_axes);
@@ -77,7 +75,9 @@ class TrackedDevice : public InputDevice {
       state_.move = state_.turn = {0, 0, 0};
     }
     note_problem();
-    const DeviceSpan span{state_, std::min(since_.seconds(), most_span)};
+    DeviceSpan span{state_, std::min(since_.seconds(), most_span), heard_.seconds()};
+    // A wand that is nowhere, or may be elsewhere by now, holds nothing.
+    if (!state_.pose || is_silent()) span.state.grabs = span.state.probes = false;
     since_ = {};
     return span;
   }
@@ -87,16 +87,17 @@ class TrackedDevice : public InputDevice {
   static void check(vrpn_BaseClass& device, const std::string& name) {
     const vrpn_Connection* const connection = device.connectionPtr();
     if (connection == nullptr || !connection->doing_okay()) {
-      throw std::runtime_error("'" + name + "': VRPN finds no such host");
+      throw std::runtime_error("'" + name + "': VRPN cannot connect");
     }
   }
+  bool is_silent() const { return heard_.seconds() > silent_seconds; }
   static bool is_connected(vrpn_BaseClass& device) { return device.connectionPtr()->connected(); }
 
   void note_problem() {
     problem_.clear();
     if (!is_connected(tracker_)) {
       problem_ = names_.tracker + ": no VRPN server answers";
-    } else if (!state_.pose || heard_.seconds() > silent_seconds) {
+    } else if (!state_.pose || is_silent()) {
       problem_ = names_.tracker + ": no pose of sensor " + std::to_string(names_.sensor);
     } else if (!is_connected(buttons_)) {
       problem_ = names_.buttons + ": no VRPN server answers";
@@ -106,10 +107,9 @@ class TrackedDevice : public InputDevice {
   static void VRPN_CALLBACK take_pose(void* device, const vrpn_TRACKERCB said) {
     auto* const self = static_cast<TrackedDevice*>(device);
     const auto& [x, y, z, w] = said.quat;
-    const Point3 position{said.pos[0], said.pos[1], said.pos[2]};
-    const auto rotation = unit_rotation({w, x, y, z});
-    if (!is_finite(position) || !rotation) return;
-    self->state_.pose = DevicePose{position, *rotation};
+    const auto pose = device_pose({said.pos[0], said.pos[1], said.pos[2]}, {w, x, y, z});
+    if (!pose) return;
+    self->state_.pose = pose;
     self->heard_ = {};
   }
 
@@ -147,7 +147,7 @@ class TrackedDevice : public InputDevice {
 }  // namespace
 
 std::unique_ptr<InputDevice> open_tracked_device(const std::string& name) {
-  return std::make_unique<TrackedDevice>(names_of(name));
+  return std::make_unique<TrackedDevice>(tracked_names(name));
 }
 
 }  // namespace tetwarp::view

@@ -14,18 +14,20 @@ DeviceHand::DeviceHand(std::vector<std::unique_ptr<InputDevice>> devices, HandAc
   for (auto& device : devices) hands_.push_back({.device = std::move(device)});
 }
 
-bool DeviceHand::update(Camera& camera, const EyeRay& middle, const RoomPlace& room) {
+bool DeviceHand::update(Camera& camera, const EyeRay& middle) {
   const std::vector<WandRay> rays_before = std::exchange(rays_, {});
   const std::string problems_before = std::exchange(problems_, {});
-  room_ = room;
   bool has_moved = false;
   for (Held& hand : hands_) {
-    if (!hand.device) continue;
-    const auto span = hand.device->read();
-    const std::string problem = hand.device->problem();
-    if (!problem.empty()) problems_ += (problems_.empty() ? "" : "\n") + problem;
-    has_moved = act(hand, span.value_or(DeviceSpan{}), camera, middle) || has_moved;
-    if (!span) hand.device.reset();
+    read(hand);
+    if (!hand.problem.empty()) problems_ += (problems_.empty() ? "" : "\n") + hand.problem;
+    has_moved = steer(hand, camera, middle) || has_moved;
+  }
+  // The room goes with the camera.
+  const RoomPlace room = actions_.place(camera);
+  for (Held& hand : hands_) {
+    const std::optional<DevicePose>& pose = hand.said.state.pose;
+    if (pose) point(hand, place_of(*pose, room), norm(minus(camera.eye, camera.target)));
   }
   has_news_ = rays_ != rays_before || problems_ != problems_before;
   return has_moved;
@@ -46,8 +48,19 @@ bool DeviceHand::is_simulating() const {
       hands_, [](const Held& hand) { return hand.device && hand.device->is_simulated(); });
 }
 
-void DeviceHand::use_buttons(Held& hand, const DeviceState& state, const EyeRay& ray) {
-  const bool takes = state.grabs && !hand.grabs, probes = state.probes && !hand.probes;
+void DeviceHand::read(Held& hand) {
+  if (!hand.device) return;
+  const std::optional<DeviceSpan> span = hand.device->read();
+  hand.said = span.value_or(DeviceSpan{});
+  hand.problem = hand.device->problem();
+  if (!span) hand.device.reset();
+}
+
+void DeviceHand::use_buttons(Held& hand, const EyeRay& ray) {
+  const DeviceState& state = hand.said.state;
+  const auto holds = [](const Held& any) { return any.holds; };
+  const bool takes = state.grabs && !hand.grabs && std::ranges::none_of(hands_, holds);
+  const bool probes = state.probes && !hand.probes;
   hand.grabs = state.grabs;
   hand.probes = state.probes;
   if (takes) {
@@ -55,7 +68,7 @@ void DeviceHand::use_buttons(Held& hand, const DeviceState& state, const EyeRay&
       actions_.grab(*found);
       hand.holds = true;
       hand.target = found->point;
-      if (state.pose) hand.local = place_of(*state.pose, room_).local_of(found->point);
+      hand.local.reset();
     }
   }
   if (hand.holds && !hand.grabs) {
@@ -69,32 +82,37 @@ void DeviceHand::carry(Held& hand, const Point3& target) {
   if (target != hand.target) actions_.pull(hand.target = target);
 }
 
-/// @returns whether the camera has moved
-bool DeviceHand::act(Held& hand, const DeviceSpan& span, Camera& camera, const EyeRay& middle) {
-  const DeviceState& state = span.state;
-  if (state.pose) {
-    const WandPlace wand = place_of(*state.pose, room_);
-    const bool held_before = hand.holds;
-    use_buttons(hand, state, wand.ray());
-    if (hand.holds && held_before) carry(hand, wand.world_of(hand.local));
-    Point3 end = hand.target;
-    if (!hand.holds) {
-      const EyeRay ray = wand.ray();
-      const auto found = actions_.meet(ray);
-      const double reach = norm(minus(camera.eye, camera.target));
-      end = found ? found->point : plus(ray.origin, times(reach, unit(ray.direction)));
-    }
-    rays_.push_back({wand.origin, end});
-  } else {
-    use_buttons(hand, state, middle);
+/// The camera, or what a device without a pose holds. @returns whether the camera has moved
+bool DeviceHand::steer(Held& hand, Camera& camera, const EyeRay& middle) {
+  const DeviceState& state = hand.said.state;
+  if (!state.pose) {
+    use_buttons(hand, middle);
+    hand.local.reset();
     if (hand.holds) {
-      carry(hand, plus(hand.target, carried_way(camera, span)));
+      carry(hand, plus(hand.target, carried_way(camera, hand.said)));
       return false;
     }
   }
   if (norm(state.move) + norm(state.turn) <= 0) return false;
-  camera = moved_camera(camera, span);
+  camera = moved_camera(camera, hand.said);
   return true;
+}
+
+/// @param reach  of a ray that meets nothing [m]
+void DeviceHand::point(Held& hand, const WandPlace& wand, double reach) {
+  const EyeRay ray = wand.ray();
+  use_buttons(hand, ray);
+  if (hand.holds && hand.local) {
+    carry(hand, wand.world_of(*hand.local));
+  } else if (hand.holds) {
+    hand.local = wand.local_of(hand.target);
+  }
+  Point3 end = hand.target;
+  if (!hand.holds) {
+    const auto found = actions_.meet(ray);
+    end = found ? found->point : plus(ray.origin, times(reach, unit(ray.direction)));
+  }
+  if (is_in_world(wand.origin) && is_in_world(end)) rays_.push_back({wand.origin, end});
 }
 
 }  // namespace tetwarp::view

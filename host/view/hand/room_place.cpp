@@ -9,15 +9,14 @@ namespace {
 Point3 along_axes(const std::array<Point3, 3>& axes, const Point3& x) {
   return plus(plus(times(x[0], axes[0]), times(x[1], axes[1])), times(x[2], axes[2]));
 }
+}  // namespace
 
-/// Columns of the matrix of a unit quaternion.
 std::array<Point3, 3> columns_of(const std::array<double, 4>& rotation) {
   const auto& [w, x, y, z] = rotation;
   return {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
            {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
            {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
 }
-}  // namespace
 
 Point3 RoomPlace::world_of(const Point3& x) const {
   return plus(origin, along_axes(axes, minus(x, observer)));

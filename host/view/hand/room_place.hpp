@@ -22,6 +22,9 @@ struct RoomPlace {
   bool operator==(const RoomPlace&) const = default;
 };
 
+/// Columns of the matrix of a unit quaternion w x y z.
+std::array<Point3, 3> columns_of(const std::array<double, 4>& rotation);
+
 /// A tracked device in the world: x of the device maps to origin + axes x. It points along -z.
 struct WandPlace {
   Point3 origin{};

@@ -14,8 +14,13 @@ SceneHand::SceneHand(const ViewScene& scene,
     : scene_(scene), simulation_(simulation), cut_(std::move(cut)) {}
 
 std::optional<Pick> SceneHand::meet(const EyeRay& ray) {
-  return pick(simulation_.frames().front().points, scene_.triangles, ray.origin, ray.direction,
-              cut_());
+  const LiveFrame& frame = simulation_.frames().front();
+  const Question question{ray, frame.step, frame.tick, cut_()};
+  if (asked_ != question) {
+    met_ = pick(frame.points, scene_.triangles, ray.origin, ray.direction, question.cut);
+    asked_ = question;
+  }
+  return met_;
 }
 
 void SceneHand::grab(const Pick& point) {
@@ -34,6 +39,13 @@ std::string SceneHand::probe(const EyeRay& ray) {
   const auto found = meet(ray);
   if (!found) return "nothing is there";
   return probe_text(scene_, simulation_.frames().front(), *found, ray.direction);
+}
+
+HandActions SceneHand::actions() {
+  return {.meet = [this](const EyeRay& ray) { return meet(ray); },
+          .grab = [this](const Pick& point) { grab(point); },
+          .pull = [this](const Point3& target) { pull(target); },
+          .release = [this] { release(); }};
 }
 
 }  // namespace tetwarp::view

@@ -1,10 +1,12 @@
 /// @file scene_hand.hpp
 /// SceneHand: what mouse and devices do to what a ray meets.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "host/view/hand/device_hand.hpp"
 #include "host/view/live_simulation.hpp"
 #include "host/view/pick.hpp"
 #include "host/view/view_scene.hpp"
@@ -28,11 +30,24 @@ class SceneHand {
   void release();
   /// What is where the ray meets something.
   std::string probe(const EyeRay& ray);
+  /// All but HandActions::probe and place. They use this.
+  HandActions actions();
 
  private:
   const ViewScene& scene_;
   LiveSimulation& simulation_;
   std::function<std::optional<Cut>()> cut_;
+
+  /// What decides what a ray meets, with step and tick of the frame.
+  struct Question {
+    EyeRay ray;
+    std::int64_t step = 0, tick = 0;
+    std::optional<Cut> cut;
+
+    bool operator==(const Question&) const = default;
+  };
+  std::optional<Question> asked_;  ///< newest: a wand that rests asks again and again
+  std::optional<Pick> met_;
 };
 
 }  // namespace tetwarp::view

@@ -136,7 +136,8 @@ void ScreenServer::run() {
     counts_.lost = gone_;
     counts_.screens = static_cast<std::int64_t>(group_.size());
     counts_.late = group_.late_count();
-    counts_.has_lost_head = tracked_ && clock_.seconds() - heard_head_ > silent_seconds;
+    counts_.has_lost_head =
+        (tracked_ || !room_.tracker.empty()) && clock_.seconds() - heard_head_ > silent_seconds;
   }
   for (const std::string& member : group_.members()) send(member, EndMessage{});
 }

@@ -33,7 +33,7 @@ void ValueRange::include(SurfaceQuantity quantity, const std::vector<std::vector
   if (quantity == SurfaceQuantity::adhesion || quantity == SurfaceQuantity::none) return;
   for (const std::vector<float>& of_body : values) {
     for (const float value : of_body) {
-      if (std::isnan(value)) continue;
+      if (!std::isfinite(value)) continue;
       const bool starts_at_value = quantity == SurfaceQuantity::gap;
       if (!has_value_) low_ = high_ = starts_at_value ? value : 0;
       has_value_ = true;

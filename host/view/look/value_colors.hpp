@@ -18,7 +18,7 @@ class ValueRange {
   ValueRange() = default;
   ValueRange(double low, double high) : low_(low), high_(high) {}
 
-  /// Starts anew with another quantity.
+  /// Starts anew with another quantity. Values that are not finite do not count.
   void include(SurfaceQuantity quantity, const std::vector<std::vector<float>>& values);
   /// Adhesion goes from 0 to 1, stress from 0 on, gaps between their extremes.
   double low() const { return low_; }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
+#include "host/view/devices/tracked_names.hpp"
 #include "host/view/screens/off_axis.hpp"
 
 namespace tetwarp::view {
@@ -44,10 +45,6 @@ void check_screen(const Screen& screen, const Point3& observer) {
 }
 }  // namespace
 
-bool is_in_world(const Point3& x) {
-  return std::ranges::all_of(x, [](double part) { return std::abs(part) < largest_world; });
-}
-
 void check_room(Room& room) {
   if (room.screens.empty()) throw std::invalid_argument("screens: there are none");
   if (!is_in_world(room.observer)) {
@@ -59,6 +56,7 @@ void check_room(Room& room) {
   if (!(room.wait > 0 && room.wait <= 60)) {
     throw std::invalid_argument("wait: is above 0 and at most 60 s");
   }
+  if (!room.tracker.empty()) tracked_names(room.tracker);
   std::set<std::string> names;
   for (const Screen& screen : room.screens) {
     if (screen.name.empty()) throw std::invalid_argument("screens: each needs a name");
@@ -92,22 +90,17 @@ HeadPose head_at(const std::vector<HeadPoint>& path, double time) {
 }
 
 std::array<Point3, 2> eyes_of(const HeadPose& head, double eye_separation) {
-  const auto& [w, x, y, z] = head.rotation;
-  const Point3 right{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
-  const Point3 half = times(eye_separation / 2, right);
+  const Point3 half = times(eye_separation / 2, columns_of(head.rotation)[0]);
   return {minus(head.position, half), plus(head.position, half)};
 }
 
-RoomPlace place_of_camera(const Room& room,
-                          const Point3& eye,
-                          const Point3& target,
-                          const Point3& up) {
-  const Point3 back = unit(minus(eye, target));
-  const Point3 right = unit(cross(up, back));
-  const double meter = norm(minus(eye, target)) / room.focus;
+RoomPlace place_of_camera(const Room& room, const Camera& camera) {
+  const Point3 arm = minus(camera.eye, camera.target), back = unit(arm);
+  const Point3 right = unit(cross(camera.up, back));
+  const double meter = norm(arm) / room.focus;
   if (!(meter > 0 && norm(right) > 0)) throw std::invalid_argument("the camera has no direction");
   return {room.observer,
-          eye,
+          camera.eye,
           {times(meter, right), times(meter, cross(back, right)), times(meter, back)}};
 }
 

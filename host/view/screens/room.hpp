@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/make.hpp>
 #include <tetwarp/volume.hpp>
 
 #include "host/view/hand/room_place.hpp"
@@ -17,10 +18,6 @@ namespace tetwarp::view {
 /// Limits of rooms, of their files and of messages alike.
 inline constexpr std::int32_t farthest_window = 65535;  ///< left and top, either way [pixel]
 inline constexpr std::int32_t largest_window = 16384;   ///< width and height [pixel]
-inline constexpr double largest_world = 1e9;            ///< a coordinate [m]
-
-/// Whether all coordinates are below largest_world.
-bool is_in_world(const Point3& x);
 
 /// How a screen shows two eyes, or which one.
 enum class Stereo : std::uint8_t { none, side_by_side, anaglyph, quad_buffer, left, right };
@@ -75,9 +72,6 @@ std::array<Point3, 2> eyes_of(const HeadPose& head, double eye_separation);
 
 /// The room whose observer looks ahead as a camera does, with the camera's target at the focus.
 /// @throws std::invalid_argument  the camera's eye and target coincide, or `up` is along its view
-RoomPlace place_of_camera(const Room& room,
-                          const Point3& eye,
-                          const Point3& target,
-                          const Point3& up);
+RoomPlace place_of_camera(const Room& room, const Camera& camera);
 
 }  // namespace tetwarp::view

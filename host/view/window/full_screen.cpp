@@ -32,7 +32,7 @@ bool FullScreen::ask_manager() const {
   event.xclient.window = reinterpret_cast<std::uintptr_t>(window_->GetGenericWindowId());
   event.xclient.message_type = XInternAtom(display, "_NET_WM_STATE", False);
   event.xclient.format = 32;
-  event.xclient.data.l[0] = is_full_ ? 1 : 0;
+  event.xclient.data.l[0] = 2;  // turn: the user may have changed it by the manager
   event.xclient.data.l[1] =
       static_cast<long>(XInternAtom(display, "_NET_WM_STATE_FULLSCREEN", False));
   event.xclient.data.l[3] = 1;  // of a program, not of a pager
@@ -43,8 +43,8 @@ bool FullScreen::ask_manager() const {
 }
 
 void FullScreen::turn() {
-  is_full_ = !is_full_;
   if (ask_manager()) return;
+  is_full_ = !is_full_;
   if (is_full_) {
     const int *const place = window_->GetPosition(), *const size = window_->GetSize();
     before_ = {place[0], place[1], size[0], size[1]};

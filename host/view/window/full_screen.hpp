@@ -20,7 +20,7 @@ class FullScreen {
   bool ask_manager() const;
 
   vtkRenderWindow* window_;
-  bool is_full_ = false;
+  bool is_full_ = false;         ///< where there is no window manager
   std::array<int, 4> before_{};  ///< left, top, width, height
 };
 

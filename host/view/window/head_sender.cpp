@@ -3,30 +3,28 @@
 #include "host/view/window/head_sender.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "host/view/devices/number_line.hpp"
 #include "host/view/devices/tracked_device.hpp"
 
 namespace tetwarp::view {
 namespace {
 constexpr double ask_seconds = 0.005, repeat_seconds = 0.5;
+constexpr double fresh_seconds = 1;  // of a pose that is repeated
 
 std::optional<HeadPose> head_of(const std::string& line) {
-  std::istringstream words(line);
-  std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
-  if (!words.eof() || (numbers.size() != 3 && numbers.size() != 7)) return std::nullopt;
-  HeadPose head;
-  std::copy_n(numbers.begin(), 3, head.position.begin());
-  if (numbers.size() == 3) return head;
-  const auto rotation = unit_rotation({numbers[3], numbers[4], numbers[5], numbers[6]});
-  if (!rotation) return std::nullopt;
-  head.rotation = *rotation;
-  return head;
+  const auto numbers = numbers_of(line);
+  if (!numbers || (numbers->size() != 3 && numbers->size() != 7)) return std::nullopt;
+  std::array<double, 4> rotation{1, 0, 0, 0};
+  std::copy(numbers->begin() + 3, numbers->end(), rotation.begin());
+  const auto pose = device_pose({(*numbers)[0], (*numbers)[1], (*numbers)[2]}, rotation);
+  if (!pose) return std::nullopt;
+  return HeadPose{pose->position, pose->rotation};
 }
 }  // namespace
 
@@ -52,10 +50,11 @@ void send_tracked_head(const std::string& name,
   std::optional<DevicePose> sent;
   Stopwatch since_sent;
   while (is_interrupted == 0) {
-    const std::optional<DevicePose> pose = tracker->read()->state.pose;
+    const DeviceSpan span = tracker->read().value();
+    const std::optional<DevicePose>& pose = span.state.pose;
     const std::string problem = tracker->problem();
     const bool is_due = pose != sent || since_sent.seconds() > repeat_seconds;
-    if (problem.empty() && is_due) {
+    if (pose && is_due && span.pose_age < fresh_seconds) {
       link.send(HeadMessage{{pose->position, pose->rotation}});
       sent = pose;
       since_sent = {};

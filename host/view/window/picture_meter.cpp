@@ -20,9 +20,9 @@ void PictureMeter::begin() {
 }
 
 void PictureMeter::end() {
-  const auto count = static_cast<double>(count_ - first_count_);
-  rate_ = count / since_first_.seconds();
-  seconds_ = (drawing_seconds() - first_drawing_) / std::max(count, 1.0);
+  const auto pictures = static_cast<double>(count());
+  rate_ = pictures / since_first_.seconds();
+  seconds_ = (drawing_seconds() - first_drawing_) / std::max(pictures, 1.0);
 }
 
 /// Of all threads but that of the simulation.

@@ -23,7 +23,8 @@ class PictureMeter {
   void end();
 
   std::size_t last_second() const { return recent_.size(); }
-  std::int64_t count() const { return count_; }
+  /// Pictures from begin() on.
+  std::int64_t count() const { return count_ - first_count_; }
   /// Pictures a second of wall time from begin() to end().
   double rate() const { return rate_; }
   /// Processor time of each, which is all that the other threads do if the simulation has one [s].

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <tetwarp/error.hpp>
@@ -132,7 +133,7 @@ class MasterScreens::Impl {
       of_screen.screenshot = beside(options.screenshot, screen.name);
       children_.push_back(start_child(of_screen, screen.display));
     }
-    started_screens_ = static_cast<std::int64_t>(children_.size());
+    started_screens_ = children_.size();
     if (!room_.tracker.empty()) children_.push_back(start_child(tracker_options(of_screen), ""));
   }
   ~Impl() {
@@ -150,8 +151,9 @@ class MasterScreens::Impl {
       waitid(P_PID, static_cast<id_t>(child), &how, WEXITED | WNOHANG | WNOWAIT);
       return how.si_pid == child;
     };
-    while (server_->counts().screens < started_screens_ &&
-           std::ranges::none_of(children_, has_ended) && watch.seconds() < start_seconds) {
+    const auto screens = std::span(children_).first(started_screens_);
+    while (server_->counts().screens < static_cast<std::int64_t>(screens.size()) &&
+           std::ranges::none_of(screens, has_ended) && watch.seconds() < start_seconds) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
@@ -172,7 +174,7 @@ class MasterScreens::Impl {
   SceneSharer sharer_;
   std::optional<ScreenServer> server_;
   std::vector<pid_t> children_;
-  std::int64_t started_screens_ = 0;  ///< of the children
+  std::size_t started_screens_ = 0;  ///< the first of the children
 };
 
 MasterScreens::MasterScreens(LiveSimulation& simulation,
@@ -187,8 +189,7 @@ void MasterScreens::wait_for_screens() {
 }
 
 void MasterScreens::set_view(const MasterView& view) {
-  const RoomPlace place =
-      place_of_camera(impl_->room(), view.camera.eye, view.camera.target, view.camera.up);
+  const RoomPlace place = place_of_camera(impl_->room(), view.camera);
   impl_->server().set_view(
       place, {static_cast<std::uint8_t>(view.volumes), view.shows_contacts, view.level, view.width,
               view.slices, view.cut, view.curve, view.rays});

@@ -29,8 +29,7 @@ constexpr double window_pixels = 400;         // by which the mouse moves the wi
 RoomPlace room_place(const MasterScreens* screens, const Camera& camera) {
   Room own;
   own.focus = 0.6;
-  return place_of_camera(screens != nullptr ? screens->room() : own, camera.eye, camera.target,
-                         camera.up);
+  return place_of_camera(screens != nullptr ? screens->room() : own, camera);
 }
 }  // namespace
 
@@ -83,15 +82,16 @@ void ViewWindow::set_up_mouse() {
 }
 
 void ViewWindow::set_up_devices() {
-  HandActions actions;
-  actions.meet = [this](const EyeRay& ray) { return hand_.meet(ray); };
-  actions.grab = [this](const Pick& point) { hand_.grab(point); };
-  actions.pull = [this](const Point3& target) { hand_.pull(target); };
-  actions.release = [this] { hand_.release(); };
+  HandActions actions = hand_.actions();
+  actions.grab = [this](const Pick& point) {
+    style_->let_go();  // one thing is held at a time
+    hand_.grab(point);
+  };
   actions.probe = [this](const EyeRay& ray) {
     note(hand_.probe(ray));
     draw();
   };
+  actions.place = [this](const Camera& camera) { return room_place(screens_, camera); };
   devices_.emplace(open_devices(options_.devices), std::move(actions));
 }
 
@@ -101,7 +101,7 @@ bool ViewWindow::update_devices() {
   Camera camera = camera_of(renderer_->GetActiveCamera());
   const int* const size = window_->GetSize();
   const EyeRay middle = pointer_.ray_at(size[0] / 2, size[1] / 2);
-  const bool has_moved = devices_->update(camera, middle, room_place(screens_, camera));
+  const bool has_moved = devices_->update(camera, middle);
   if (has_moved) set_camera(camera, renderer_->GetActiveCamera());
   if (devices_->has_news()) actors_->show_rays(devices_->rays());
   return has_moved || devices_->has_news();
@@ -368,6 +368,7 @@ bool ViewWindow::move_slice(int x, int y, int steps) {
 bool ViewWindow::grab(int x, int y) {
   const auto found = hand_.meet(pointer_.ray_at(x, y));
   if (!found) return false;
+  if (devices_) devices_->let_go();
   grab_depth_ = pointer_.depth_of(found->point);
   hand_.grab(*found);
   return true;
