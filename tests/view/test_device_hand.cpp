@@ -21,7 +21,7 @@ namespace tetwarp::test {
 namespace {
 using namespace view;
 
-/// Says what it is told.
+/// A device whose state the test sets.
 class ToldDevice : public InputDevice {
  public:
   ToldDevice(const DeviceState& says, const std::string& suffers, const bool& is_gone)
@@ -38,7 +38,7 @@ class ToldDevice : public InputDevice {
   const bool& is_gone_;
 };
 
-/// A hand with two devices, the other of which says nothing if not told to, and what they did. A
+/// A hand with two devices, the second one at rest unless set, and what they did. A
 /// body is everywhere, 2 m along each ray.
 struct TestHand {
   TestHand() {

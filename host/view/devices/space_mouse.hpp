@@ -7,9 +7,9 @@
 
 namespace tetwarp::view {
 
-/// Pushing and turning the cap moves and turns; the first button grabs, the
-/// second one probes. The daemon listens where the environment variable SPNAV_SOCKET says, if
-/// libspnav knows that.
+/// Pushing and turning the cap moves and turns; the first button grabs, the second one probes.
+/// Versions of libspnav that read the environment variable SPNAV_SOCKET look for the daemon's
+/// socket there.
 /// @throws std::runtime_error  no daemon answers, or this program was built without libspnav
 std::unique_ptr<InputDevice> open_space_mouse();
 

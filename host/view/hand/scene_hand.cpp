@@ -15,12 +15,12 @@ SceneHand::SceneHand(const ViewScene& scene,
 
 std::optional<Pick> SceneHand::meet(const EyeRay& ray) {
   const LiveFrame& frame = simulation_.frames().front();
-  const Question question{ray, frame.step, frame.tick, cut_()};
-  if (asked_ != question) {
-    met_ = pick(frame.points, scene_.triangles, ray.origin, ray.direction, question.cut);
-    asked_ = question;
+  const PickInput input{ray, frame.step, frame.tick, cut_()};
+  if (newest_input_ != input) {
+    newest_pick_ = pick(frame.points, scene_.triangles, ray.origin, ray.direction, input.cut);
+    newest_input_ = input;
   }
-  return met_;
+  return newest_pick_;
 }
 
 void SceneHand::grab(const Pick& point) {

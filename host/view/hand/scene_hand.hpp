@@ -38,16 +38,16 @@ class SceneHand {
   LiveSimulation& simulation_;
   std::function<std::optional<Cut>()> cut_;
 
-  /// What decides what a ray meets, with step and tick of the frame.
-  struct Question {
+  /// What the pick of a ray depends on: the ray, step and tick of the frame, the cut.
+  struct PickInput {
     EyeRay ray;
     std::int64_t step = 0, tick = 0;
     std::optional<Cut> cut;
 
-    bool operator==(const Question&) const = default;
+    bool operator==(const PickInput&) const = default;
   };
-  std::optional<Question> asked_;  ///< newest: a wand that rests asks again and again
-  std::optional<Pick> met_;
+  std::optional<PickInput> newest_input_;  ///< a wand at rest gives the same again
+  std::optional<Pick> newest_pick_;
 };
 
 }  // namespace tetwarp::view

@@ -60,7 +60,7 @@ TETWARP_EXPORT ComposedField compose(std::span<const ComposeLink* const> links,
                                      int threads,
                                      const Progress& progress = {});
 
-/// compose() into memory of the caller.
+/// compose() into memory of the caller: errors as there, and for arrays of another size.
 TETWARP_EXPORT ComposeNotes compose_into(std::span<const ComposeLink* const> links,
                                          const Grid& grid,
                                          int threads,

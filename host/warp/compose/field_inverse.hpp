@@ -21,7 +21,7 @@ struct InverseResult {
 
 /// The inverse of x -> x + u(x), by Newton's method with halved steps from x = y. Where that fails,
 /// it begins again in each cell of the field that may be taken to a box around y, so no bound on
-/// the derivatives of u is needed.
+/// the derivatives of u is needed. Source: Newton's method with a line search; the cells are ours.
 class TETWARP_EXPORT FieldInverse {
  public:
   /// @param field  a DisplacementField or a BSplineTransform, kept by the caller
